@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/composition/composition.hpp"
+
+namespace bowstring::apps {
+
+inline constexpr int exit_converged = 0;
+inline constexpr int exit_fell_short = 1;
+inline constexpr int exit_wrong_input = 2;
+inline constexpr int exit_plugin_failed = 3;
+
+struct CommonOptions {
+  std::vector<std::string> plugin_path;  ///< --plugin-path, in order
+};
+
+struct SolveOptions {
+  std::string file;
+  std::vector<std::string> set;    ///< "path=value"
+  std::string out;                 ///< result document, "" for none
+  std::vector<std::string> write;  ///< "writer=file"
+  bool json = false;
+};
+
+int solve(const CommonOptions& common, const SolveOptions& options);
+int explain(const CommonOptions& common, const std::string& file, const std::vector<std::string>& set);
+/// `kind` "" for all.
+int list_plugins(const CommonOptions& common, const std::string& kind, bool json);
+/// `what`: "kind/name".
+int describe(const CommonOptions& common, const std::string& what, bool json);
+
+}  // namespace bowstring::apps

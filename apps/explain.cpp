@@ -1,0 +1,103 @@
+#include <cstdio>
+#include <set>
+
+#include "apps/shell.hpp"
+#include "core/model/manifold.hpp"
+
+namespace bowstring::apps {
+
+namespace {
+
+const char* manifold_text(Manifold manifold) {
+  switch (manifold) {
+    case Manifold::real: return "number";
+    case Manifold::vector: return "vector";
+    case Manifold::circle: return "angle (S1)";
+    case Manifold::direction: return "direction (S2)";
+    case Manifold::rotation: break;
+  }
+  return "rotation (SO3)";
+}
+
+const char* extension_text(Extension extension) {
+  switch (extension) {
+    case Extension::sliding: return "length slides through the sheath: one unknown L";
+    case Extension::fixed: return "every edge keeps its length";
+    case Extension::stretching: break;
+  }
+  return "every edge has its own length";
+}
+
+void explain_curve(const Curve& curve) {
+  std::printf("%s '%s': %d nodes, %.6g mm, ends %s and %s; %s\n",
+              curve.view.kind == CurveKind::wire ? "wire" : "vessel", curve.name.c_str(), curve.view.nodes,
+              curve.arc.back(), end_type_name(curve.end_type[0]), end_type_name(curve.end_type[1]),
+              extension_text(curve.view.extension));
+  std::printf("  kinematics %s%s\n", curve.kinematics_name.c_str(),
+              curve.needs.material_frames ? (", with material frames because " + curve.needs.reason).c_str() : "");
+  for (const FieldDeclaration& field : curve.declaration.fields) {
+    const int tangents = field.count * tangent_count(field.manifold, field.dimension);
+    int free = 0;
+    for (int u = 0; u < tangents; ++u) {
+      free += field.fixed.empty() || field.fixed[static_cast<std::size_t>(u)] == 0;
+    }
+    std::printf("    field %-14s %5d × %-14s %6d unknown, %d fixed: %s\n", field.name.c_str(), field.count,
+                manifold_text(field.manifold), free, tangents - free, field.reason.c_str());
+  }
+}
+
+void explain_plugins(const Session& session, const Registry& registry) {
+  std::set<std::string> lines;
+  const auto add = [&](const ComponentChoice& choice) {
+    lines.insert(std::string(kind_name(choice.kind)) + "/" + choice.name + "  " +
+                 registry.origin(choice.kind, choice.name).file);
+  };
+  const Composition& composition = session.composition;
+  for (const VesselTable& vessel : composition.vessels) add(vessel.geometry), add(vessel.kinematics);
+  for (const WireTable& wire : composition.wires) add(wire.kinematics);
+  for (const EnergyTable& energy : composition.energies) add(energy.component);
+  for (const ConstraintTable& constraint : composition.constraints) add(constraint.component);
+  add(composition.enforcement);
+  add(composition.solver);
+  std::printf("plugins opened, and no others\n");
+  for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
+}
+
+}  // namespace
+
+int explain(const CommonOptions& common, const std::string& file, const std::vector<std::string>& set) {
+  CompositionRequest request;
+  request.file = file;
+  if (!parse_overrides(set, request.overrides)) return exit_wrong_input;
+  PluginHost host = make_host(common, file);
+  Refusal refusal;
+  const std::unique_ptr<Session> session = prepare(request, host, refusal);
+  if (session == nullptr) return report(refusal);
+
+  const Composition& composition = session->composition;
+  if (!composition.title.empty()) std::printf("%s\n", composition.title.c_str());
+  std::printf("scene of dimension %d\n", composition.dimension);
+  for (const auto& curve : session->scene->curves) explain_curve(*curve);
+  std::printf("energies\n");
+  for (const EnergyUse& use : session->scene->energies) {
+    std::printf("  %-24s %s on '%s', %s\n", use.label.c_str(), use.plugin.c_str(),
+                session->scene->curves[static_cast<std::size_t>(use.curve)]->name.c_str(),
+                counted(static_cast<int>(use.laws.size()), "law").c_str());
+  }
+  const ProblemSummary& summary = session->assembly->summary();
+  std::printf("rows: %s, %s\n", counted(summary.equalities, "equality").c_str(),
+              counted(summary.inequalities, "inequality").c_str());
+  for (const RowGroup& group : summary.row_groups) std::printf("  %s\n", group.text.c_str());
+  std::printf("unknowns: %d, eliminated because they are held: %d\n", summary.unknowns, summary.fixed);
+  std::printf("Hessian: %d entries in its lower triangle; Jacobian: %d\n",
+              session->assembly->hessian_pattern().entries(), session->assembly->jacobian_pattern().entries());
+  std::printf("solved by %s with rows by %s\n", composition.solver.name.c_str(), composition.enforcement.name.c_str());
+  explain_plugins(*session, host);
+  for (const std::string& idle : composition.without_effect) std::printf("without effect: %s\n", idle.c_str());
+  for (const std::string& idle : session->scene->without_effect) std::printf("without effect: %s\n", idle.c_str());
+  for (const std::string& warning : composition.warnings) std::printf("warning: %s\n", warning.c_str());
+  for (const std::string& warning : session->scene->warnings) std::printf("warning: %s\n", warning.c_str());
+  return exit_converged;
+}
+
+}  // namespace bowstring::apps

@@ -1,0 +1,61 @@
+#include <CLI/CLI.hpp>
+
+#include "apps/commands.hpp"
+#include "core/result/document.hpp"
+
+int main(int argc, char** argv) {
+  using namespace bowstring::apps;
+  CLI::App app{"Bowstring: elastic wires in elastic vessels, coupled by unilateral contact"};
+  app.set_version_flag("--version", std::string("bowstring ") + bowstring::bowstring_version);
+  app.require_subcommand(1);
+  CommonOptions common;
+  const auto plugin_path = [&](CLI::App* command) {
+    command->add_option("--plugin-path", common.plugin_path, "folder with plugins, searched before all others; repeatable")
+        ->allow_extra_args(false);
+  };
+  const auto overrides = [](CLI::App* command, std::vector<std::string>& set) {
+    command->add_option("--set", set, "path=value: overrides one value of the composition; repeatable")
+        ->allow_extra_args(false);
+  };
+
+  SolveOptions solve_options;
+  CLI::App* solve_command = app.add_subcommand("solve", "solve a composition and certify the result");
+  solve_command->add_option("FILE", solve_options.file, "composition (TOML)")->required();
+  overrides(solve_command, solve_options.set);
+  solve_command->add_option("--out", solve_options.out, "write the result document (JSON) to this file");
+  solve_command->add_option("--write", solve_options.write, "writer=file: also write the result in this format; repeatable")
+      ->allow_extra_args(false);
+  solve_command->add_flag("--json", solve_options.json, "print the result document, and nothing else, on stdout");
+  plugin_path(solve_command);
+
+  std::string explain_file;
+  std::vector<std::string> explain_set;
+  CLI::App* explain_command = app.add_subcommand("explain", "say what would be built and why; solve nothing");
+  explain_command->add_option("FILE", explain_file, "composition (TOML)")->required();
+  overrides(explain_command, explain_set);
+  plugin_path(explain_command);
+
+  std::string kind;
+  bool plugins_json = false;
+  CLI::App* plugins_command = app.add_subcommand("plugins", "list what is installed");
+  plugins_command->add_option("KIND", kind, "only this kind");
+  plugins_command->add_flag("--json", plugins_json, "as JSON");
+  plugin_path(plugins_command);
+
+  std::string what;
+  bool describe_json = false;
+  CLI::App* describe_command = app.add_subcommand("describe", "parameters of one plugin with unit, bounds and default");
+  describe_command->add_option("KIND/NAME", what, "for instance energy/wire-bending")->required();
+  describe_command->add_flag("--json", describe_json, "as JSON");
+  plugin_path(describe_command);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_converged : exit_wrong_input;
+  }
+  if (solve_command->parsed()) return solve(common, solve_options);
+  if (explain_command->parsed()) return explain(common, explain_file, explain_set);
+  if (plugins_command->parsed()) return list_plugins(common, kind, plugins_json);
+  return describe(common, what, describe_json);
+}

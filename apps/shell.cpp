@@ -1,0 +1,48 @@
+#include "apps/shell.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace bowstring::apps {
+
+PluginHost make_host(const CommonOptions& common, const std::string& composition_file) {
+  PluginHostOptions options;
+  options.command_line_path = common.plugin_path;
+  if (!composition_file.empty()) options.composition_path = composition_plugin_path(composition_file);
+  if (const char* environment = std::getenv("BOWSTRING_PLUGIN_PATH")) options.environment_path = environment;
+  return PluginHost(options);
+}
+
+bool parse_overrides(const std::vector<std::string>& set, std::vector<Override>& out) {
+  bool good = true;
+  for (const std::string& text : set) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      complain("--set " + text + ": found no path=value; expected for instance --set solver.tolerance=1e-9");
+      good = false;
+      continue;
+    }
+    out.push_back({text.substr(0, equals), text.substr(equals + 1)});
+  }
+  return good;
+}
+
+int report(const Refusal& refusal) {
+  for (const InputError& error : refusal.errors) std::fprintf(stderr, "%s\n", error.text().c_str());
+  if (!refusal.plugin_failure.ok()) complain(refusal.plugin_failure.text);
+  return refusal.errors.empty() ? exit_plugin_failed : exit_wrong_input;
+}
+
+void complain(const std::string& text) { std::fprintf(stderr, "error: %s\n", text.c_str()); }
+
+std::string number(double value, int digits) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::string counted(int count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+}  // namespace bowstring::apps

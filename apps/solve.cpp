@@ -1,0 +1,170 @@
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <optional>
+
+#include <unistd.h>
+
+#include "apps/shell.hpp"
+#include "core/composition/defaults.hpp"
+#include "core/interfaces/writer.hpp"
+#include "core/result/document.hpp"
+#include "core/result/write_file.hpp"
+
+namespace bowstring::apps {
+
+namespace {
+
+std::atomic<bool> interrupted{false};
+
+extern "C" void on_interrupt(int) { interrupted.store(true); }
+
+struct Output {
+  ComponentChoice writer;
+  std::string file;
+};
+
+/// Resolves every `--write writer=file` before anything is solved.
+int find_writers(const std::vector<std::string>& write, Registry& registry, std::vector<Output>& out) {
+  int code = exit_converged;
+  for (const std::string& text : write) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      complain("--write " + text + ": found no writer=file; expected for instance --write svg=picture.svg");
+      code = exit_wrong_input;
+      continue;
+    }
+    Output output;
+    output.file = text.substr(equals + 1);
+    output.writer.kind = Kind::writer;
+    output.writer.name = text.substr(0, equals);
+    Status status;
+    output.writer.descriptor = registry.find(Kind::writer, output.writer.name, status);
+    if (output.writer.descriptor == nullptr) {
+      complain("--write " + text + ": " + status.text);
+      code = status.code == Code::invalid_input ? exit_wrong_input : exit_plugin_failed;
+      continue;
+    }
+    output.writer.parameters = default_parameters(*output.writer.descriptor);
+    out.push_back(std::move(output));
+  }
+  return code;
+}
+
+/// One line that is drawn over and over on a terminal; silent elsewhere.
+class Progress {
+ public:
+  bool operator()(const IterationRecord& record) {
+    if (terminal_) {
+      std::fprintf(stderr, "\r\033[Kiteration %3d   energy %.6g N mm   stationarity %.1e N   rows %.1e mm   step %.2g",
+                   record.iteration, record.energy, record.stationarity, record.penetration, record.step);
+      std::fflush(stderr);
+    }
+    return !interrupted.load();
+  }
+  void finish() const {
+    if (terminal_) std::fprintf(stderr, "\r\033[K");
+  }
+
+ private:
+  bool terminal_ = ::isatty(STDERR_FILENO) != 0;
+};
+
+void line(const char* label, const std::optional<double>& value, const char* unit) {
+  if (value) std::printf("  %-26s %12s %s\n", label, number(*value, 6).c_str(), unit);
+}
+
+void print_table(const Session& session, const Solution& solution, const Readings& readings) {
+  const Certificate& certificate = solution.certificate;
+  if (!session.composition.title.empty()) std::printf("%s\n", session.composition.title.c_str());
+  std::printf("%s: %s\n", verdict_name(certificate.verdict), certificate.reason.c_str());
+  std::printf("  %s, %s, %s; load %.0f ms, set-up %.0f ms, solve %.0f ms\n",
+              counted(solution.solver.iterations, "iteration").c_str(),
+              counted(session.assembly->epochs(), "epoch").c_str(),
+              counted(session.assembly->unknowns(), "unknown").c_str(), 1e3 * session.seconds.load,
+              1e3 * session.seconds.setup, 1e3 * session.seconds.solve);
+  std::printf("energy\n");
+  double total = 0.0;
+  for (std::size_t e = 0; e < readings.term_energy.size(); ++e) {
+    line(session.scene->energies[e].label.c_str(), readings.term_energy[e], "N mm");
+    total += readings.term_energy[e];
+  }
+  line("total", total, "N mm");
+  const Quantities& q = readings.quantities;
+  std::printf("quantities\n");
+  line("peak displacement", q.peak_displacement, "mm");
+  line("mean displacement", q.mean_displacement, "mm");
+  line("wire length", q.wire_length, "mm");
+  line("vessel length change", q.vessel_length_change, "mm");
+  if (!session.scene->constraints.empty()) {
+    std::printf("  %-26s %12d\n", "contacts", q.contact_count);
+    line("contact force, sum", q.contact_force, "N");
+    line("line load, peak", q.line_load_peak, "N/mm");
+  }
+  std::printf("certificate\n");
+  line("stationarity", certificate.stationarity, "N");
+  line("row penetration", certificate.penetration, "mm");
+  line("penetration along the wire", certificate.dense_penetration(), "mm");
+  line("complementarity", certificate.complementarity, "N mm");
+  std::printf("  %-26s %12s … %s\n", "vessel stretch ratio", number(certificate.minimum_stretch, 4).c_str(),
+              number(certificate.maximum_stretch, 4).c_str());
+}
+
+int write_outputs(const std::vector<Output>& outputs, const std::string& document) {
+  int code = exit_converged;
+  for (const Output& output : outputs) {
+    Status status;
+    const auto writer = create<Writer>(output.writer, status);
+    const std::string temporary = temporary_name(output.file);
+    if (status.ok()) status = writer->write(document.c_str(), temporary.c_str());
+    if (status.ok()) status = publish_file(temporary, output.file);
+    if (status.ok()) continue;
+    std::remove(temporary.c_str());
+    complain("--write " + output.writer.name + "=" + output.file + ": " + status.text);
+    code = exit_plugin_failed;
+  }
+  return code;
+}
+
+}  // namespace
+
+int solve(const CommonOptions& common, const SolveOptions& options) {
+  CompositionRequest request;
+  request.file = options.file;
+  if (!parse_overrides(options.set, request.overrides)) return exit_wrong_input;
+  PluginHost host = make_host(common, options.file);
+  std::vector<Output> outputs;
+  if (const int code = find_writers(options.write, host, outputs); code != exit_converged) return code;
+
+  Refusal refusal;
+  const std::unique_ptr<Session> session = prepare(request, host, refusal);
+  if (session == nullptr) return report(refusal);
+
+  std::signal(SIGINT, on_interrupt);
+  Progress progress;
+  const Solution solution = bowstring::solve(*session, std::ref(progress));
+  progress.finish();
+  std::signal(SIGINT, SIG_DFL);
+
+  Readings readings;
+  if (Status status = read_solution(*session, solution, readings); !status.ok()) {
+    complain(status.text);
+  }
+  const std::string document = result_document(*session, solution, readings, host);
+  if (options.json) {
+    std::fwrite(document.data(), 1, document.size(), stdout);
+  } else {
+    print_table(*session, solution, readings);
+  }
+  for (const std::string& warning : solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  if (!options.out.empty()) {
+    if (Status status = write_file(options.out, document); !status.ok()) {
+      complain("--out: " + status.text);
+      return exit_wrong_input;
+    }
+  }
+  if (const int code = write_outputs(outputs, document); code != exit_converged) return code;
+  return solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
+}
+
+}  // namespace bowstring::apps

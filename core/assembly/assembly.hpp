@@ -1,0 +1,156 @@
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/assembly/law_batch.hpp"
+#include "core/assembly/pattern.hpp"
+#include "core/interfaces/problem.hpp"
+#include "core/model/scene.hpp"
+
+namespace bowstring {
+
+/// One entry of a field: a node's position, an edge's orientation, a length.
+struct FieldEntry {
+  Manifold manifold = Manifold::real;
+  int dimension = 1;
+  int coordinate = 0;    ///< first number in q
+  int unknown = 0;       ///< first scene-wide tangent number
+  int block = -1;        ///< of the free unknowns, −1 where all are fixed
+  double arc_fraction = 0.0;  ///< place along its curve, 0…1
+};
+
+/// Where a group of rows comes from.
+struct RowOrigin {
+  int curve = -1;         ///< of closure rows
+  int constraint = -1;    ///< of constraint rows
+  int first = 0, count = 0;
+  std::string name;
+};
+
+/// The scene as a problem: reads places, asks laws, terms and kinematics, owns every chain rule, and scatters into
+/// patterns that stay until the next epoch. Nothing in `evaluate` and `lagrangian_hessian` allocates. Everything is
+/// summed in a fixed order.
+class Assembly final : public Problem, public PlaceTables {
+ public:
+  /// The scene outlives the assembly. Throws std::runtime_error naming the curve or constraint that fails at State 1
+  /// or at the start.
+  explicit Assembly(Scene& scene);
+
+  const ProblemSummary& summary() const noexcept override { return summary_; }
+  int unknowns() const noexcept override { return free_count_; }
+  int coordinates() const noexcept override { return scene_.coordinates; }
+  int rows() const noexcept override { return static_cast<int>(row_lower_.size()); }
+  Span<const double> row_lower() const noexcept override { return row_lower_; }
+  Span<const double> row_upper() const noexcept override { return row_upper_; }
+  Span<const double> lower() const noexcept override { return lower_; }
+  Span<const double> upper() const noexcept override { return upper_; }
+  SparsityPattern jacobian_pattern() const noexcept override { return jacobian_pattern_.view(); }
+  SparsityPattern hessian_pattern() const noexcept override { return hessian_pattern_.view(); }
+  Span<const int> order() const noexcept override { return order_; }
+  Span<const double> stationarity_scale() const noexcept override { return scale_; }
+  Status evaluate(Span<const double> q, const ProblemEvaluation& evaluation) noexcept override;
+  Status lagrangian_hessian(Span<const double> q, double energy_factor, Span<const double> multipliers,
+                            Span<double> values) noexcept override;
+  void values(Span<const double> q, Span<double> out) const noexcept override;
+  void retract(Span<const double> q, Span<const double> delta, Span<double> out) const noexcept override;
+  Status accept(Span<const double> q) noexcept override;
+  void set_guard(double fraction_of_clearance) noexcept override { guard_ = fraction_of_clearance; }
+  bool epoch_due() const noexcept override;
+  Status new_epoch() noexcept override;
+  int epochs() const noexcept override { return epochs_; }
+  std::unique_ptr<EuclideanProblem> chart(Span<const double> base) override;
+
+  /// Table of y at the state last evaluated; null where the site does not exist.
+  const double* table(int curve, Site site) const noexcept override;
+
+  // What the certificate and the result document read. Each brings the state up to date first.
+
+  /// Energies of the scene's terms, in their order, N mm.
+  Status term_energies(Span<const double> q, std::vector<double>& out);
+  /// Lagrangian gradient over all tangent numbers, the fixed ones included: what supports carry.
+  Status full_gradient(Span<const double> q, Span<const double> multipliers, std::vector<double>& out);
+  /// Stress at the places of a site, of the energies alone: moments at stations, tension at edges or lengths.
+  Status site_stress(Span<const double> q, int curve, Site site, std::vector<double>& out);
+  Status report(Span<const double> q, int constraint, std::vector<RowReport>& out);
+
+  const Scene& scene() const noexcept { return scene_; }
+  const std::vector<RowOrigin>& row_origins() const noexcept { return origins_; }
+  const std::vector<FieldEntry>& entries() const noexcept { return entries_; }
+  const std::vector<int>& free_of_unknown() const noexcept { return free_; }
+  const BlockLayout& blocks() const noexcept { return blocks_; }
+  const HessianPattern& hessian_blocks() const noexcept { return hessian_pattern_; }
+
+ private:
+  struct LawSlot {
+    int energy = 0;
+    int table = 0;
+    LawAssembly law;
+  };
+  struct RowRead {        // one place of a constraint row
+    int table = 0, index = 0, values = 0, width = 0;
+    bool identity = true;
+  };
+  struct ConstraintSlot {
+    int first_row = 0;
+    std::vector<RowRead> reads;                // of all places, in declaration order
+    std::vector<double> jacobian, hessian;     // as the constraint writes them
+    std::vector<int> jacobian_begin, hessian_begin;    // per row + 1
+    std::vector<int> unknown_begin, unknown;   // per row: free unknowns that it reads, stencil after stencil
+    std::vector<int> jacobian_position, hessian_position;
+    std::vector<int> hessian_position_begin;
+    bool identity = true;                      // every place of every row has B = I
+  };
+
+  SiteTable* find_table(int curve, Site site) noexcept;
+  const SiteTable* find_table(int curve, Site site) const noexcept;
+  void number_unknowns();
+  void make_tables();
+  void make_rows();
+  void make_patterns();
+  void make_order();
+  void make_scales();
+  ConstraintSlot make_slot(const ConstraintUse& use, int first_row) const;
+  void locate_constraint(ConstraintSlot& slot);
+  Status named(Status status, const std::string& what) const;
+
+  Status update_places(Span<const double> q);
+  Status update_energy();
+  Status update_jacobians();
+  Status check_guard();
+  Status update_rows(bool jacobian);
+  void scatter_jacobian(const ConstraintSlot& slot, Span<double> out) const noexcept;
+  Status add_constraint_hessian(ConstraintSlot& slot, Span<const double> multipliers, Span<double> values);
+  const double* curve_q(int curve) const noexcept;
+
+  Scene& scene_;
+  std::vector<FieldEntry> entries_;
+  std::vector<int> free_;                  // scene-wide tangent number → free unknown or −1
+  int free_count_ = 0;
+  BlockLayout blocks_;
+  std::vector<SiteTable> tables_;
+  std::vector<int> table_of_;              // curve × site
+  std::vector<LawSlot> laws_;
+  std::vector<ConstraintSlot> constraints_;
+  std::vector<RowOrigin> origins_;
+  std::vector<double> row_lower_, row_upper_, lower_, upper_, scale_;
+  std::vector<int> closure_position_;      // of closure Jacobians, table after table
+  std::vector<int> order_;
+  HessianPattern hessian_pattern_;
+  JacobianPattern jacobian_pattern_;
+  ProblemSummary summary_;
+  double guard_ = std::numeric_limits<double>::infinity();
+  int epochs_ = 1;
+
+  // The state that the tables hold, and what of it has been computed.
+  std::vector<double> q_;
+  bool has_places_ = false, has_energy_ = false, has_jacobians_ = false, has_rows_ = false, has_row_jacobians_ = false;
+  Status guard_status_, row_status_;
+  bool guard_checked_ = false;
+  double energy_ = 0.0;
+  std::vector<double> term_energy_, row_, full_gradient_, full_delta_, row_weight_;
+};
+
+}  // namespace bowstring

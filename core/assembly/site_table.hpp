@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+namespace bowstring {
+
+/// All places of one site of one curve at the current state: y, B = ∂y/∂δ, and the stress and modulus that laws and
+/// terms have summed there.
+struct SiteTable {
+  int curve = 0;
+  const Kinematics* kinematics = nullptr;
+  const SiteDeclaration* declaration = nullptr;
+  std::vector<double> y;              ///< count × values
+  std::vector<double> jacobian;       ///< count × values × width; empty where B = I
+  std::vector<double> stress;         ///< count × values: of the energies alone
+  std::vector<double> total_stress;   ///< count × values: of the Lagrangian
+  std::vector<double> modulus;        ///< count × packed_size(values); empty where nothing has one
+  std::vector<double> curvature;      ///< count × packed_size(width); empty where the site is linear
+  std::vector<int> unknown;           ///< count × width: scene-wide tangent number, −1 pads
+  std::vector<int> hessian_position;  ///< count × packed_size(width), −1 where an unknown is fixed
+
+  int count() const noexcept { return declaration->count; }
+  int values() const noexcept { return declaration->values; }
+  int width() const noexcept { return declaration->width; }
+  bool bends() const noexcept { return !declaration->identity && !declaration->linear; }
+
+  Status update_values(const double* curve_q, int coordinates);
+  Status update_jacobian(const double* curve_q, int coordinates);
+  /// Σ total_stress ∂²y/∂δ² at every place.
+  Status update_curvature(const double* curve_q, int coordinates);
+
+  /// out += Σ_places Bᵀ stress, over scene-wide tangent numbers.
+  void add_gradient(const std::vector<double>& place_stress, double* out) const noexcept;
+  /// hessian += factor · BᵀCB + curvature, through `hessian_position`.
+  void add_hessian(double factor, double* hessian) const noexcept;
+};
+
+SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration);
+
+}  // namespace bowstring

@@ -1,0 +1,233 @@
+#include "core/certificate/certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace bowstring {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double bound_reach = 1e-6;        // a real unknown so near its bound (relative) lies on it
+constexpr double weak_gap = 1e-6;           // mm: such a row touches …
+constexpr double weak_multiplier = 1e-6;    // N: … and carries no more than this
+
+std::string number(double value, int digits = 4) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+/// Largest entry of the Lagrangian gradient that no active bound holds, in N.
+void judge_stationarity(const Assembly& assembly, Span<const double> q, const std::vector<double>& full_gradient,
+                        Certificate& out) {
+  std::vector<double> value(at(assembly.unknowns()));
+  assembly.values(q, value);
+  const Scene& scene = assembly.scene();
+  for (std::size_t u = 0; u < full_gradient.size(); ++u) {
+    const int free = assembly.free_of_unknown()[u];
+    if (free < 0) continue;
+    const double lower = assembly.lower()[at(free)];
+    const double upper = assembly.upper()[at(free)];
+    double gradient = full_gradient[u];
+    const bool at_lower = std::isfinite(lower) && value[at(free)] - lower <= bound_reach * (1.0 + std::fabs(lower));
+    const bool at_upper = std::isfinite(upper) && upper - value[at(free)] <= bound_reach * (1.0 + std::fabs(upper));
+    if (at_lower || at_upper) {
+      for (const auto& curve : scene.curves) {
+        const int local = static_cast<int>(u) - curve->unknown_begin;
+        if (local < 0 || local >= curve->unknowns) continue;
+        out.folds.push_back("a length of '" + curve->name + "' lies on its bound (" + number(value[at(free)]) +
+                            " mm), which is no equilibrium of a curve");
+      }
+    }
+    if (at_lower) gradient = std::min(gradient, 0.0);
+    if (at_upper) gradient = std::max(gradient, 0.0);
+    out.stationarity = std::max(out.stationarity, std::fabs(gradient) / assembly.stationarity_scale()[at(free)]);
+  }
+}
+
+void judge_rows(const Assembly& assembly, const std::vector<double>& residual, Span<const double> multipliers,
+                Certificate& out) {
+  bool any = false;
+  for (int r = 0; r < assembly.rows(); ++r) {
+    const double lower = assembly.row_lower()[at(r)];
+    const double upper = assembly.row_upper()[at(r)];
+    out.penetration = std::max({out.penetration, residual[at(r)] - upper, lower - residual[at(r)]});
+    if (lower == upper) continue;
+    // A multiplier pushes away from one bound; where that bound does not exist its sign is wrong.
+    const double multiplier = multipliers[at(r)];
+    const bool from_upper = std::isfinite(upper) && (multiplier >= 0.0 || !std::isfinite(lower));
+    const double bound = from_upper ? upper : lower;
+    const double signed_multiplier = from_upper ? multiplier : -multiplier;
+    const double distance = std::fabs(residual[at(r)] - bound);
+    out.minimum_multiplier = any ? std::min(out.minimum_multiplier, signed_multiplier) : signed_multiplier;
+    any = true;
+    out.complementarity = std::max(out.complementarity, std::fabs(multiplier) * distance);
+    if (distance <= weak_gap && signed_multiplier <= weak_multiplier) out.weakly_active.push_back(r);
+  }
+}
+
+void judge_folds(const Assembly& assembly, double minimum_stretch, Certificate& out) {
+  bool any = false;
+  for (const auto& curve : assembly.scene().curves) {
+    if (curve->view.kind != CurveKind::vessel || curve->view.rigid) continue;
+    const double* p = assembly.table(curve->view.index, Site::node);
+    const int d = curve->view.dimension;
+    double previous[3] = {};
+    for (int i = 0; i + 1 < curve->view.nodes; ++i) {
+      double edge[3] = {};
+      double squared = 0.0;
+      double turn = 0.0;
+      for (int k = 0; k < d; ++k) {
+        edge[k] = p[(i + 1) * d + k] - p[i * d + k];
+        squared += edge[k] * edge[k];
+        turn += edge[k] * previous[k];
+      }
+      const double stretch = std::sqrt(squared) / curve->view.edge_length[i];
+      out.minimum_stretch = any ? std::min(out.minimum_stretch, stretch) : stretch;
+      out.maximum_stretch = any ? std::max(out.maximum_stretch, stretch) : stretch;
+      any = true;
+      const std::string place = " of vessel '" + curve->name + "' at s = " + number(curve->arc[at(i)]) + " mm";
+      if (stretch <= minimum_stretch) {
+        out.folds.push_back("edge " + std::to_string(i) + place + " has folded: stretch ratio " + number(stretch));
+      } else if (i > 0 && turn < 0.0) {
+        out.folds.push_back("edge " + std::to_string(i) + place + " turns by more than 90 degrees against the one before it");
+      }
+      std::copy_n(edge, 3, previous);
+    }
+  }
+}
+
+void judge_crossings(const Assembly& assembly, Certificate& out) {
+  const Scene& scene = assembly.scene();
+  std::vector<std::pair<int, int>> seen;
+  for (const ConstraintUse& use : scene.constraints) {
+    if (use.scene.on.size() != 2 || use.scene.radius[1] == nullptr) continue;
+    const std::pair<int, int> pair{use.scene.on[0].index, use.scene.on[1].index};
+    if (std::find(seen.begin(), seen.end(), pair) != seen.end()) continue;
+    seen.push_back(pair);
+    const Curve& wire = *scene.curves[at(pair.first)];
+    const Curve& vessel = *scene.curves[at(pair.second)];
+    if (wire.view.kind != CurveKind::wire || vessel.view.kind != CurveKind::vessel) continue;
+    contact::Centerline wall;
+    wall.dimension = scene.dimension;
+    wall.nodes = vessel.view.nodes;
+    wall.points = assembly.table(pair.second, Site::node);
+    wall.radius = vessel.radius.data();
+    contact::WirePolyline polyline;
+    polyline.nodes = wire.view.nodes;
+    polyline.points = assembly.table(pair.first, Site::node);
+    polyline.radius = wire.radius.empty() ? nullptr : wire.radius.data();
+    const std::optional<double> start = use.scene.starts_along ? std::optional<double>(0.0) : std::nullopt;
+    PairPenetration found;
+    found.wire = pair.first;
+    found.vessel = pair.second;
+    found.dense = contact::max_penetration_dense(wall, polyline, start);
+    found.crossing = contact::check_crossing(wall, polyline, start);
+    if (found.crossing.crossed()) {
+      const contact::Penetration& deepest = found.crossing.deepest;
+      const auto segment = at(std::clamp(static_cast<int>(deepest.vessel_coordinate), 0, vessel.view.nodes - 1));
+      out.crossings.push_back("wire '" + wire.name + "' passes through the wall of '" + vessel.name +
+                              "' between its rows by " + number(deepest.depth) + " mm (a sound mesh allows " +
+                              number(found.crossing.allowance) + " mm) at wire s = " + number(deepest.wire_arc) +
+                              " mm, vessel s = " + number(vessel.arc[segment]) + " mm");
+    }
+    out.pairs.push_back(found);
+  }
+}
+
+void rounding_floor(const Assembly& assembly, Certificate& out) {
+  const Scene& scene = assembly.scene();
+  for (const EnergyUse& use : scene.energies) {
+    const Curve& curve = *scene.curves[at(use.curve)];
+    double stiffest = 0.0;
+    for (const LawUse& law : use.laws) {
+      if (law.description.site != Site::station) continue;
+      for (const std::vector<double>& parameter : law.parameters) {
+        for (const double value : parameter) stiffest = std::max(stiffest, value);
+      }
+    }
+    if (stiffest > 0.0) out.rounding_floor = std::max(out.rounding_floor, curve.kinematics->rounding_floor(stiffest));
+  }
+}
+
+std::string misses(const Certificate& c, const CertificateTable& t) {
+  std::string text;
+  const auto add = [&](bool missed, const char* what, double value, double threshold, const char* unit) {
+    if (!missed) return;
+    text += (text.empty() ? "" : ", ") + std::string(what) + " " + number(value) + " " + unit + " (threshold " +
+            number(threshold) + ")";
+  };
+  add(!(c.stationarity <= t.stationarity), "stationarity", c.stationarity, t.stationarity, "N");
+  add(!(c.penetration <= t.penetration), "row penetration", c.penetration, t.penetration, "mm");
+  add(!(c.complementarity <= t.complementarity), "complementarity", c.complementarity, t.complementarity, "N mm");
+  add(!(c.minimum_multiplier >= t.multiplier), "smallest multiplier", c.minimum_multiplier, t.multiplier, "N");
+  return text;
+}
+
+void conclude(const CertificateTable& thresholds, Claim claim, const std::string& claim_reason, Certificate& out) {
+  const std::string missed = misses(out, thresholds);
+  out.first_order = missed.empty();
+  const std::string flaw = !out.crossings.empty() ? out.crossings.front() : (out.folds.empty() ? "" : out.folds.front());
+  const std::string mend = !out.crossings.empty()
+                               ? "; use a finer wire mesh, a constraint with rows between the nodes, or walk the load up"
+                               : "; give the vessel a stretch-stiffness, or a coarser mesh";
+  if (out.first_order && flaw.empty()) {
+    out.verdict = Verdict::converged;
+    out.reason = "all thresholds of the certificate hold";
+  } else if (out.first_order) {
+    out.verdict = Verdict::invalid;
+    out.reason = flaw + mend;
+  } else {
+    switch (claim) {
+      case Claim::optimal:
+      case Claim::stalled: out.verdict = Verdict::stalled; break;
+      case Claim::infeasible: out.verdict = Verdict::infeasible; break;
+      case Claim::diverged: out.verdict = Verdict::diverged; break;
+      case Claim::failed: out.verdict = Verdict::failed; break;
+    }
+    out.reason = claim_reason + "; " + missed + (flaw.empty() ? "" : "; " + flaw + mend);
+  }
+}
+
+}  // namespace
+
+const char* verdict_name(Verdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::converged: return "converged";
+    case Verdict::invalid: return "invalid";
+    case Verdict::stalled: return "stalled";
+    case Verdict::infeasible: return "infeasible";
+    case Verdict::diverged: return "diverged";
+    case Verdict::failed: break;
+  }
+  return "failed";
+}
+
+std::optional<double> Certificate::dense_penetration() const {
+  std::optional<double> deepest;
+  for (const PairPenetration& pair : pairs) deepest = std::max(deepest.value_or(pair.dense.depth), pair.dense.depth);
+  return deepest;
+}
+
+Status certify(Assembly& assembly, Span<const double> q, Span<const double> multipliers,
+               const CertificateTable& thresholds, Claim claim, const std::string& claim_reason, Certificate& out) {
+  out = {};
+  std::vector<double> residual(at(assembly.rows()));
+  ProblemEvaluation evaluation;
+  evaluation.rows = residual;
+  if (Status status = assembly.evaluate(q, evaluation); !status.ok()) return status;
+  std::vector<double> gradient;
+  if (Status status = assembly.full_gradient(q, multipliers, gradient); !status.ok()) return status;
+  judge_stationarity(assembly, q, gradient, out);
+  judge_rows(assembly, residual, multipliers, out);
+  judge_folds(assembly, thresholds.minimum_stretch, out);
+  judge_crossings(assembly, out);
+  rounding_floor(assembly, out);
+  conclude(thresholds, claim, claim_reason, out);
+  return {};
+}
+
+}  // namespace bowstring

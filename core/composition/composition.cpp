@@ -1,0 +1,88 @@
+#include "core/composition/composition.hpp"
+
+#include <optional>
+#include <utility>
+
+#include "core/composition/components.hpp"
+#include "core/composition/curves.hpp"
+#include "core/composition/duplicates.hpp"
+#include "core/composition/keys.hpp"
+#include "core/composition/report.hpp"
+#include "core/composition/resolved.hpp"
+#include "core/composition/settings.hpp"
+#include "core/composition/sources.hpp"
+#include "core/composition/terms.hpp"
+#include "core/composition/vocabulary.hpp"
+#include "core/composition/without_effect.hpp"
+
+namespace bowstring {
+namespace {
+
+/// The entries of a list of tables; none where the file has something else, which is reported.
+const std::vector<Node>& tables_of(const Node& root, const std::string& name, Report& report) {
+  static const std::vector<Node> none;
+  const Entry* list = root.find(name);
+  if (list == nullptr) return none;
+  if (list->value.is_list()) return list->value.items;
+  report.error(list->value.position, "'" + name + "' is " + description(list->value), "a list of tables",
+               "write [[" + name + "]]");
+  return none;
+}
+
+Composition read_composition(const Node& root, Reading& reading) {
+  Report& report = reading.report;
+  Composition composition;
+  check_keys(root, "the composition", top_level_names(), later_table_names(), "remove it", report);
+  composition.title = read_title(root, report);
+  composition.dimension = reading.dimension = read_dimension(root, report);
+
+  const CurveNames names = curve_names(root);
+  for (const Node& table : tables_of(root, "vessel", report)) {
+    composition.vessels.push_back(read_vessel(table, reading));
+  }
+  for (const Node& table : tables_of(root, "wire", report)) {
+    composition.wires.push_back(read_wire(table, names, reading));
+  }
+  if (root.find("vessel") == nullptr && root.find("wire") == nullptr) {
+    report.error(root.position, "the scene has no curve", "a [[vessel]]", "add [[vessel]] with name and geometry");
+  }
+  for (const Node& table : tables_of(root, "energy", report)) {
+    composition.energies.push_back(read_energy(table, names, reading));
+  }
+  for (const Node& table : tables_of(root, "constraint", report)) {
+    composition.constraints.push_back(read_constraint(table, names, reading));
+  }
+  composition.enforcement = read_enforcement(root, reading);
+  composition.solver = read_solver(root, reading);
+  composition.certificate = read_certificate(root, report);
+  check_duplicates(root, report);
+  return composition;
+}
+
+}  // namespace
+
+CompositionOutcome load_composition(const CompositionRequest& request, Registry& registry) {
+  CompositionOutcome outcome;
+  Report report;
+  const std::optional<SourceTree> sources = read_sources(request, report);
+  if (sources) {
+    Reading reading{registry, report, outcome.plugin_failure};
+    Composition composition = read_composition(sources->root, reading);
+    composition.file = request.file;
+    if (report.empty() && outcome.plugin_failure.ok()) {
+      composition.resolved_json = resolved_json(composition, sources->plugin_path);
+      composition.without_effect = without_effect(sources->root, composition);
+      outcome.composition = std::move(composition);
+    }
+  }
+  outcome.errors = report.sorted();
+  return outcome;
+}
+
+std::vector<std::string> composition_plugin_path(const std::string& file) {
+  Report ignored;
+  const std::optional<SourceTree> sources = read_sources({file, {}}, ignored);
+  return sources ? sources->plugin_path : std::vector<std::string>{};
+}
+
+}  // namespace bowstring

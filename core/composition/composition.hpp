@@ -1,0 +1,124 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/interfaces/curve.hpp"
+#include "core/interfaces/registry.hpp"
+
+namespace bowstring {
+
+/// One thing that is wrong with the user's input, as a person reads it.
+struct InputError {
+  std::string position;  ///< "file:line:column", or "--set path=value"
+  std::string found;     ///< "unknown key 'stifness' in energy 'anchoring'"
+  std::string expected;  ///< "one of: on, name, stiffness"
+  std::string mend;      ///< "did you mean 'stiffness'?"
+  std::string text() const;  ///< "position: found; expected …; mend"
+};
+
+/// A plugin that the composition names, with its checked parameters.
+struct ComponentChoice {
+  Kind kind = Kind::energy;
+  std::string name;                                ///< the plugin's: "wire-bending"
+  ParameterSet parameters;
+  const ComponentDescriptor* descriptor = nullptr;
+  std::string position;                            ///< of the table, "file:line:column"
+};
+
+/// `free` | `pinned` | `clamped` | `held-edge`.
+enum class EndType : int { free, pinned, clamped, held_edge };
+const char* end_type_name(EndType type) noexcept;
+
+struct EndTable {
+  EndType type = EndType::pinned;
+  std::vector<double> tangent;  ///< dimension numbers, not yet normalised, or empty
+  std::string position;
+};
+
+struct VesselTable {
+  std::string name;
+  ComponentChoice geometry;
+  std::optional<ParameterValue> radius;   ///< a profile; empty: from the geometry's point data
+  ComponentChoice kinematics;
+  EndTable end[2];
+  bool rigid = false;
+  std::string position;
+};
+
+struct WireTable {
+  std::string name;
+  std::string vessel;                     ///< "" where the wire has its own geometry
+  std::optional<ComponentChoice> geometry;
+  int nodes = 0;                          ///< 0: the vessel's or the geometry's
+  ParameterValue radius;                  ///< a profile
+  ComponentChoice kinematics;
+  EndTable end[2];
+  std::string position;
+};
+
+struct EnergyTable {
+  std::string label;    ///< `name`, or else the type: how paths and results call it
+  std::string on;       ///< a curve
+  ComponentChoice component;
+};
+
+struct ConstraintTable {
+  std::string label;
+  std::vector<std::string> on;   ///< curves
+  ComponentChoice component;
+};
+
+/// Thresholds of `converged`.
+struct CertificateTable {
+  double stationarity = 1e-6;      ///< N
+  double penetration = 1e-8;       ///< mm, of rows
+  double complementarity = 1e-8;   ///< N mm
+  double multiplier = -1e-8;       ///< N, smallest admissible
+  double minimum_stretch = 0.2;    ///< an edge at or below this ratio counts as folded
+  std::string require = "none";    ///< "none" | "minimum"
+};
+
+/// A checked, resolved composition: every reference holds, every number is in mm, N, rad.
+struct Composition {
+  int schema = 1;
+  std::string title;
+  std::string file;
+  int dimension = 3;
+  std::vector<VesselTable> vessels;
+  std::vector<WireTable> wires;
+  std::vector<EnergyTable> energies;
+  std::vector<ConstraintTable> constraints;
+  ComponentChoice enforcement, solver;
+  CertificateTable certificate;
+  std::string resolved_json;            ///< everything above with defaults filled in, as the result document holds it
+  std::vector<std::string> warnings;
+  std::vector<std::string> without_effect;  ///< declared, allowed, and idle in this scene: for `explain`
+};
+
+/// `path=value` from the command line, applied after the file's own overrides.
+struct Override {
+  std::string path;    ///< "energy.axial-tension.tension"
+  std::string value;   ///< TOML; what does not parse as TOML is a string
+};
+
+struct CompositionRequest {
+  std::string file;
+  std::vector<Override> overrides;
+};
+
+struct CompositionOutcome {
+  std::optional<Composition> composition;
+  std::vector<InputError> errors;   ///< of the whole file at once; empty on success
+  Status plugin_failure;            ///< `failed`: a known plugin could not be loaded (exit code 3)
+};
+
+/// Reads, overrides, resolves and checks a composition. Opens, through the registry, only the plugins that it names.
+CompositionOutcome load_composition(const CompositionRequest& request, Registry& registry);
+
+/// The plugin path that a composition asks for, read before any registry exists; relative to the file, absolute here.
+std::vector<std::string> composition_plugin_path(const std::string& file);
+
+}  // namespace bowstring

@@ -1,0 +1,212 @@
+#include "core/composition/curves.hpp"
+
+#include <cstddef>
+#include <optional>
+
+#include "core/composition/ends.hpp"
+#include "core/composition/keys.hpp"
+#include "core/composition/nearest.hpp"
+#include "core/composition/parameters.hpp"
+#include "core/composition/vocabulary.hpp"
+
+namespace bowstring {
+namespace {
+
+constexpr const char* default_kinematics = "edge-frames";
+
+ParameterDeclaration radius_declaration(const char* default_text, const char* description) {
+  ParameterDeclaration radius{"radius", ParameterType::profile, "mm", default_text, description};
+  radius.lower = 0.0;
+  radius.lower_exclusive = true;
+  radius.differentiable = true;
+  return radius;
+}
+
+Span<const ParameterDeclaration> vessel_schema() {
+  static const ParameterDeclaration schema[] = {
+      radius_declaration("", "lumen radius, unless the geometry brings it"),
+      {"rigid", ParameterType::flag, "", "false", "the vessel has no unknowns"},
+  };
+  return {schema, std::size(schema)};
+}
+
+Span<const ParameterDeclaration> wire_schema() {
+  static const ParameterDeclaration schema[] = {
+      {"nodes", ParameterType::integer, "", "", "nodes of the wire's own mesh, otherwise as many as its vessel has", 3, 1e6},
+      radius_declaration(nullptr, "outer radius"),
+  };
+  return {schema, std::size(schema)};
+}
+
+SchemaOwner owner_of(const std::string& name) {
+  SchemaOwner owner;
+  owner.name = name;
+  owner.help = "remove it";
+  return owner;
+}
+
+/// A name alone, or a table with `type` and the kinematics' parameters.
+ComponentChoice read_kinematics(const Node& table, const std::string& owner, Reading& reading) {
+  ComponentUse use;
+  use.kind = Kind::kinematics;
+  use.owner = owner;
+  use.default_type = default_kinematics;
+  use.structural = {"type"};
+
+  Node chosen;
+  chosen.position = table.position;
+  if (const Entry* entry = table.find("kinematics")) {
+    if (entry->value.is_table()) return read_component(entry->value, use, reading);
+    if (!entry->value.is_text()) {
+      reading.report.error(entry->value.position, "'kinematics' of " + owner + " is " + description(entry->value),
+                           "the name of a kinematics, or a table with its 'type'",
+                           std::string("write kinematics = \"") + default_kinematics + "\"");
+      return {};
+    }
+    chosen.position = entry->value.position;
+    chosen.set({"type", entry->position, entry->value});
+  }
+  return read_component(chosen, use, reading);
+}
+
+ComponentChoice read_geometry(const Node& table, const std::string& owner, Reading& reading) {
+  ComponentUse use;
+  use.kind = Kind::geometry;
+  use.owner = owner;
+  use.structural = {"type"};
+  const Entry* entry = table.find("geometry");
+  if (entry == nullptr) {
+    reading.report.error(table.position, owner + " has no 'geometry'", "a table with the 'type' of a geometry",
+                         "add geometry = { type = \"<geometry>\", … }");
+    return {};
+  }
+  if (!check_is_table(entry->value, "'geometry' of " + owner, "write geometry = { type = \"<geometry>\", … }",
+                      reading.report)) {
+    return {};
+  }
+  return read_component(entry->value, use, reading);
+}
+
+std::optional<ParameterValue> optional_value(const ParameterSet& set, const std::string& key) {
+  const ParameterValue* value = set.find(key);
+  return value != nullptr ? std::optional<ParameterValue>(*value) : std::nullopt;
+}
+
+void check_radius_origin(const std::optional<ParameterValue>& radius, const Node& table, const std::string& owner,
+                         Report& report) {
+  if (!radius || radius->profile.measured_from == Profile::Origin::first_end) return;
+  report.error(table.find("radius")->value.find("measured-from")->value.position,
+               "'measured-from' in 'radius' of " + owner, "it on a wire only",
+               "remove it: a vessel's arc length counts from its first end");
+}
+
+}  // namespace
+
+std::vector<std::string> CurveNames::all() const {
+  std::vector<std::string> names = vessels;
+  names.insert(names.end(), wires.begin(), wires.end());
+  return names;
+}
+
+CurveNames curve_names(const Node& root) {
+  CurveNames names;
+  for (const std::string kind : {"vessel", "wire"}) {
+    const Entry* list = root.find(kind);
+    if (list == nullptr) continue;
+    if (!list->value.is_list()) names.complete = false;
+    for (const Node& table : list->value.items) {
+      const bool named = !table.text_at("name").empty();
+      if (!named && (kind == "vessel" || table.find("name") != nullptr)) names.complete = false;
+      const std::string name = named ? table.text_at("name") : kind;
+      std::vector<std::string>& of_kind = kind == "vessel" ? names.vessels : names.wires;
+      if (!contains_name(of_kind, name)) of_kind.push_back(name);
+    }
+  }
+  return names;
+}
+
+void check_name(const Node& table, const std::string& owner, Report& report) {
+  const Entry* name = table.find("name");
+  if (name == nullptr) return;
+  bool good = name->value.is_text() && !name->value.text.empty();
+  for (const char letter : name->value.text) {
+    good = good && letter != '.' && letter != '=' && static_cast<unsigned char>(letter) >= 0x20;
+  }
+  if (good) return;
+  report.error(name->value.position, "'name' of " + owner + " is " + description(name->value),
+               "text without '.' and '=', which paths are split at", "choose another name");
+}
+
+void check_reference(const Node& reference, const std::string& subject, const std::string& kind,
+                     const std::vector<std::string>& candidates, const CurveNames& names, Report& report) {
+  if (!reference.is_text()) {
+    report.error(reference.position, subject + " is " + description(reference), "the name of a " + kind,
+                 "write it in quotes");
+    return;
+  }
+  if (contains_name(candidates, reference.text) || !names.complete) return;
+  const std::vector<std::string> near = nearest_names(reference.text, candidates);
+  std::string mend = near.empty() ? "name one that the file has" : did_you_mean(near);
+  if (contains_name(names.all(), reference.text)) {
+    const std::string other = kind == "vessel" ? "wire" : "vessel";
+    mend = "'" + reference.text + "' is a " + other;
+  }
+  report.error(reference.position, "unknown " + kind + " '" + reference.text + "' in " + subject,
+               candidates.empty() ? "a " + kind + ", but the file has none" : "one of: " + comma_separated(candidates),
+               mend);
+}
+
+VesselTable read_vessel(const Node& table, Reading& reading) {
+  VesselTable vessel;
+  vessel.name = table.text_at("name");
+  vessel.position = table.position.text();
+  const std::string name = vessel.name.empty() ? "a vessel without a name" : "vessel '" + vessel.name + "'";
+  if (!check_is_table(table, name, "write it under [[vessel]]", reading.report)) return vessel;
+  if (table.find("name") == nullptr) {
+    reading.report.error(table.position, name, "every vessel to have one", "add name = \"<name>\"");
+  }
+  check_name(table, name, reading.report);
+
+  SchemaOwner owner = owner_of(name);
+  owner.structural = {"name", "geometry", "ends", "kinematics"};
+  Status no_fault;
+  const ParameterSet values = read_parameters(table, owner, vessel_schema(), no_fault, reading.report);
+  vessel.radius = optional_value(values, "radius");
+  vessel.rigid = values.has("rigid") && values.flag("rigid");
+  check_radius_origin(vessel.radius, table, name, reading.report);
+
+  vessel.geometry = read_geometry(table, name, reading);
+  vessel.kinematics = read_kinematics(table, name, reading);
+  read_ends(table, name, vessel.end, reading);
+  return vessel;
+}
+
+WireTable read_wire(const Node& table, const CurveNames& names, Reading& reading) {
+  WireTable wire;
+  wire.name = label_of(table, "wire");
+  wire.vessel = table.text_at("vessel");
+  wire.position = table.position.text();
+  const std::string name = "wire '" + wire.name + "'";
+  if (!check_is_table(table, name, "write it under [[wire]]", reading.report)) return wire;
+  check_name(table, name, reading.report);
+
+  SchemaOwner owner = owner_of(name);
+  owner.structural = {"name", "vessel", "ends", "kinematics"};
+  owner.later = {"geometry", "length", "span", "spacing"};
+  Status no_fault;
+  const ParameterSet values = read_parameters(table, owner, wire_schema(), no_fault, reading.report);
+  wire.nodes = values.has("nodes") ? static_cast<int>(values.integer("nodes")) : 0;
+  if (values.has("radius")) wire.radius = values.at("radius");
+
+  if (const Entry* vessel = table.find("vessel")) {
+    check_reference(vessel->value, "'vessel' of " + name, "vessel", names.vessels, names, reading.report);
+  } else {
+    reading.report.error(table.position, name + " has no 'vessel'", "the vessel that the wire starts along",
+                         "add vessel = \"<name>\"");
+  }
+  wire.kinematics = read_kinematics(table, name, reading);
+  read_ends(table, name, wire.end, reading);
+  return wire;
+}
+
+}  // namespace bowstring

@@ -1,0 +1,172 @@
+#include "core/composition/resolved.hpp"
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/composition/numbers.hpp"
+#include "core/composition/profiles.hpp"
+
+namespace bowstring {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Writes numbers of one value in the unit alternative that it is in.
+class NumberWriter {
+ public:
+  NumberWriter(const ParameterDeclaration& declaration, int alternative) {
+    const NumberRules rules(declaration);
+    if (rules.units.size() > 1) unit_ = rules.units[static_cast<std::size_t>(alternative)];
+  }
+
+  Json operator()(double number) const {
+    if (unit_.empty()) return number;
+    return Json(number).dump() + " " + unit_;
+  }
+
+ private:
+  std::string unit_;
+};
+
+Json profile_json(const Profile& profile, const NumberWriter& number) {
+  Json result;
+  switch (profile.form) {
+    case Profile::Form::constant: return number(profile.constant);
+    case Profile::Form::table:
+      result["table"] = Json::array();
+      for (std::size_t i = 0; i < profile.arc.size(); ++i) {
+        result["table"].push_back(Json::array({Json(profile.arc[i]), number(profile.value[i])}));
+      }
+      if (profile.measured_from != Profile::Origin::first_end) {
+        result["measured-from"] = origin_name(profile.measured_from);
+      }
+      return result;
+    case Profile::Form::segments:
+      for (std::size_t i = 0; i < profile.segment.size(); ++i) {
+        result["segments"][profile.segment[i]] = number(profile.value[i]);
+      }
+      return result;
+    case Profile::Form::column: result["column"] = profile.column; return result;
+  }
+  return result;
+}
+
+void add_parameters(Json& table, const ParameterSet& set, Span<const ParameterDeclaration> schema);
+
+Json value_json(const ParameterValue& value, const ParameterDeclaration& declaration) {
+  const NumberWriter number(declaration, value.unit_alternative);
+  switch (value.type) {
+    case ParameterType::scalar: return number(value.number);
+    case ParameterType::profile: return profile_json(value.profile, number);
+    case ParameterType::integer: return value.integer;
+    case ParameterType::flag: return value.flag;
+    case ParameterType::path:
+    case ParameterType::choice:
+    case ParameterType::text: return value.text;
+    case ParameterType::vector: {
+      Json list = Json::array();
+      for (const double entry : value.vector) list.push_back(number(entry));
+      return list;
+    }
+    case ParameterType::list: {
+      Json list = Json::array();
+      for (const ParameterSet& item : value.items) {
+        Json entry = Json::object();
+        add_parameters(entry, item, {declaration.items, static_cast<std::size_t>(declaration.item_count)});
+        list.push_back(entry);
+      }
+      return list;
+    }
+  }
+  return nullptr;
+}
+
+void add_parameters(Json& table, const ParameterSet& set, Span<const ParameterDeclaration> schema) {
+  for (const ParameterDeclaration& declaration : schema) {
+    if (const ParameterValue* value = set.find(declaration.key)) table[declaration.key] = value_json(*value, declaration);
+  }
+}
+
+void add_component(Json& table, const ComponentChoice& choice) {
+  table["type"] = choice.name;
+  const auto count = static_cast<std::size_t>(choice.descriptor->parameter_count);
+  add_parameters(table, choice.parameters, {choice.descriptor->parameters, count});
+}
+
+Json component_json(const ComponentChoice& choice) {
+  Json table;
+  add_component(table, choice);
+  return table;
+}
+
+Json end_json(const EndTable& end) {
+  if (end.tangent.empty()) return end_type_name(end.type);
+  return {{"type", end_type_name(end.type)}, {"tangent", end.tangent}};
+}
+
+/// Structural profiles are in mm and have no alternatives.
+Json radius_json(const ParameterValue& radius) {
+  const ParameterDeclaration declaration{"radius", ParameterType::profile, "mm", nullptr, ""};
+  return value_json(radius, declaration);
+}
+
+Json vessel_json(const VesselTable& vessel) {
+  Json table;
+  table["name"] = vessel.name;
+  table["geometry"] = component_json(vessel.geometry);
+  if (vessel.radius) table["radius"] = radius_json(*vessel.radius);
+  table["kinematics"] = component_json(vessel.kinematics);
+  table["ends"] = Json::array({end_json(vessel.end[0]), end_json(vessel.end[1])});
+  table["rigid"] = vessel.rigid;
+  return table;
+}
+
+Json wire_json(const WireTable& wire) {
+  Json table;
+  table["name"] = wire.name;
+  table["vessel"] = wire.vessel;
+  if (wire.geometry) table["geometry"] = component_json(*wire.geometry);
+  if (wire.nodes > 0) table["nodes"] = wire.nodes;
+  table["radius"] = radius_json(wire.radius);
+  table["kinematics"] = component_json(wire.kinematics);
+  table["ends"] = Json::array({end_json(wire.end[0]), end_json(wire.end[1])});
+  return table;
+}
+
+template <class Term>
+Json term_json(const Term& term) {
+  Json table;
+  table["name"] = term.label;
+  table["on"] = term.on;
+  add_component(table, term.component);
+  return table;
+}
+
+Json certificate_json(const CertificateTable& certificate) {
+  return {{"stationarity", certificate.stationarity},       {"penetration", certificate.penetration},
+          {"complementarity", certificate.complementarity}, {"multiplier", certificate.multiplier},
+          {"minimum-stretch", certificate.minimum_stretch}, {"require", certificate.require}};
+}
+
+}  // namespace
+
+std::string resolved_json(const Composition& composition, const std::vector<std::string>& plugin_path) {
+  Json root;
+  root["schema"] = composition.schema;
+  root["title"] = composition.title;
+  if (!plugin_path.empty()) root["plugin-path"] = plugin_path;
+  root["scene"]["dimension"] = composition.dimension;
+  for (const VesselTable& vessel : composition.vessels) root["vessel"].push_back(vessel_json(vessel));
+  for (const WireTable& wire : composition.wires) root["wire"].push_back(wire_json(wire));
+  for (const EnergyTable& energy : composition.energies) root["energy"].push_back(term_json(energy));
+  for (const ConstraintTable& constraint : composition.constraints) {
+    root["constraint"].push_back(term_json(constraint));
+  }
+  root["enforcement"] = component_json(composition.enforcement);
+  root["solver"] = component_json(composition.solver);
+  root["certificate"] = certificate_json(composition.certificate);
+  return root.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace bowstring

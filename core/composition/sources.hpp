@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/composition/composition.hpp"
+#include "core/composition/report.hpp"
+#include "core/composition/tree.hpp"
+
+namespace bowstring {
+
+/// A file with its bases and overrides, put together.
+struct SourceTree {
+  Node root;                              ///< without `schema`, `base`, `plugin-path` and `set`
+  std::vector<std::string> plugin_path;   ///< absolute; the file's own before its bases'
+};
+
+/// Reads the file and, recursively, its `base`. A file's tables are laid over those of its base (entries of a list
+/// are added, keys of a table replace), then its [set] is applied, last the request's overrides. Empty where a file
+/// cannot be read at all; what else is wrong goes into the report.
+std::optional<SourceTree> read_sources(const CompositionRequest& request, Report& report);
+
+}  // namespace bowstring

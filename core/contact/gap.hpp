@@ -1,0 +1,89 @@
+#pragma once
+
+#include "core/contact/centerline.hpp"
+
+namespace bowstring::contact {
+
+/// The gap of a wire point x at a place of the curve, φ = F(r, c) in mm, with r = |x − q(σ)|² and the
+/// clearance c = R(σ) − wire radius. Minimised over σ it is negative inside the tube's canal surface, the
+/// envelope of the spheres of radius c(σ), and zero there (to δ for `smooth_distance`).
+///
+/// | form            | F                 |                                                             |
+/// |-----------------|-------------------|-------------------------------------------------------------|
+/// | squared         | (r − c²)/(2c)     | smooth at r = 0; ∂F/∂√r = 1 at contact; needs c > 0         |
+/// | distance        | √r − c            | no derivative at r = 0, where the subgradient 0 is returned |
+/// | smooth_distance | √(r + δ²) − δ − c | δ = 1e-3 mm; c may have any sign; low by at most δ          |
+enum class GapForm : int { squared, distance, smooth_distance };
+
+inline constexpr double gap_smoothing = 1e-3;  ///< δ, mm
+
+/// F and its derivatives in r and c. NaN where the form is not defined (`squared` with c ≤ 0).
+struct GapFormValue {
+  double value, r, c, rr, rc, cc;
+};
+GapFormValue gap_form(GapForm form, double r, double c) noexcept;
+
+/// What the gap of one row is measured with.
+struct GapShape {
+  GapForm form = GapForm::squared;
+  double wire_radius = 0.0;  ///< mm
+};
+
+/// The stretch low ≤ σ ≤ high of a centerline that a row may search.
+struct Window {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+Window whole(const Centerline& curve) noexcept;
+
+/// The segment that σ lies in and `neighbours` segments on each side of it, as far as the curve goes.
+Window window_around(double sigma, int neighbours, int nodes) noexcept;
+
+/// All nodes that the curve inside a window depends on.
+NodeRange window_nodes(Interpolation interpolation, Window window, int nodes) noexcept;
+
+/// What kind of minimum a closest point is.
+enum class Location : int {
+  interior,     ///< φ_σ = 0 within a smooth piece
+  vertex,       ///< at a polyline's vertex: σ* stays there under small changes
+  curve_end,    ///< at σ = 0 or n − 1: σ* stays there
+  window_edge,  ///< φ still falls at the window's edge: the closest point is outside the window
+};
+
+struct ClosestPoint {
+  CurveCoordinate at;
+  Location location = Location::interior;
+  double gap = 0.0;        ///< h = φ(σ*), mm
+  double distance = 0.0;   ///< |x − q(σ*)|, mm
+  double clearance = 0.0;  ///< c(σ*), mm
+};
+
+/// The closest point of x within a window: σ* = argmin φ.
+/// On a spline the search descends from `start` (clipped to the window) to the first minimum and so follows
+/// its branch; on a polyline, where φ is convex on each edge, it takes the lowest of the edges' exact minima.
+/// σ* is exact to rounding, which second derivatives need. x: dimension numbers, mm. Allocates nothing; the
+/// number of steps is bounded; a NaN in x or in the nodes gives a NaN gap.
+ClosestPoint closest(const Centerline& curve, const double* x, GapShape shape, Window window,
+                     double start) noexcept;
+
+/// The place of least gap on the whole curve: a scan of each segment, then `closest` from every local minimum
+/// of it.
+ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape shape) noexcept;
+
+/// Derivatives of h at a closest point in z = (x, nodes of the segment's stencil), by the envelope theorem:
+/// ∇h = φ_z at fixed σ*, ∇²h = φ_zz − φ_zσ φ_σz/φ_σσ at an interior minimum and φ_zz elsewhere.
+/// `gradient`: (1 + count)·dimension numbers, x first, then the nodes in order; null where not wanted.
+/// `hessian`: `weight`·∇²h as packed lower triangle of that order, row by row; null where not wanted.
+/// Returns the nodes; at most `max_stencil` of them.
+NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape shape,
+                          const ClosestPoint& closest, double* gradient, double weight,
+                          double* hessian) noexcept;
+
+/// A first place on the curve for each of `count` wire points (count × dimension, mm): of all assignments
+/// that are monotone along the curve, the one with the least sum of squared distances, so that no point of
+/// the wire takes a shortcut to another limb. The wire may run against the curve's direction; it does where
+/// that at least halves the sum. Writes σ per point.
+void bind_along(const Centerline& curve, const double* points, int count, double* sigma);
+
+}  // namespace bowstring::contact

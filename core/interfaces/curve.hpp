@@ -1,0 +1,41 @@
+#pragma once
+
+#include "core/interfaces/span.hpp"
+
+namespace bowstring {
+
+enum class CurveKind : int { wire, vessel };
+
+/// How the length of a curve may change. `sliding`: one unknown L, edge lengths f_i L (a wire that runs through
+/// its sheath). `fixed`: every edge keeps its length. `stretching`: every edge has its own length (a vessel).
+enum class Extension : int { sliding, fixed, stretching };
+
+/// One end of a curve. Axes are global.
+struct EndCondition {
+  bool position_held[3] = {false, false, false};
+  bool rotation_held = false;   ///< the tangent, with material frames the whole frame, is held at the node
+  bool edge_held = false;       ///< both nodes of the end edge are held, and its length does not count in L
+  double tangent[3] = {0.0, 0.0, 0.0};  ///< unit, along the curve; the direction that is held
+};
+
+/// What plugins see of one curve. Pointers stay valid as long as the scene.
+struct CurveView {
+  int index = 0;
+  const char* name = "";
+  CurveKind kind = CurveKind::vessel;
+  int dimension = 3;
+  int nodes = 0;
+  Extension extension = Extension::stretching;
+  bool rigid = false;               ///< no unknowns
+  const double* reference = nullptr;    ///< State 1 node positions, nodes × dimension, mm
+  const double* start = nullptr;        ///< node positions that a solver starts from, nodes × dimension, mm
+  const double* edge_length = nullptr;  ///< nodes − 1: edge lengths at State 1 (vessel) or at the start (wire), mm
+  const double* fraction = nullptr;     ///< nodes − 1: f_i of a sliding wire, summing to 1; 0 on a held edge
+  const double* arc = nullptr;          ///< nodes: arc coordinate, mm
+  double start_length = 0.0;            ///< L at the start without held edges, mm
+  double held_length = 0.0;             ///< sum of the held edges' lengths, mm
+  double end_distance = 0.0;            ///< distance of the two end nodes with their prescribed moves, mm
+  EndCondition end[2];                  ///< first end, last end
+};
+
+}  // namespace bowstring

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/interfaces/span.hpp"
+#include "core/interfaces/status.hpp"
+
+namespace bowstring {
+
+/// A compressed sparse pattern: entries of outer index o are inner[begin[o]] … inner[begin[o+1] − 1], increasing.
+struct SparsityPattern {
+  Span<const int> begin;
+  Span<const int> inner;
+  int entries() const noexcept { return static_cast<int>(inner.size()); }
+};
+
+/// Consecutive rows of one origin.
+struct RowGroup {
+  std::string name;      ///< "iliac.closure" or the constraint's label
+  std::string text;      ///< "edge closure of 'iliac' (158)", for people
+  int first = 0, count = 0;
+  bool closure = false;  ///< a kinematics' own rows, which no enforcement touches
+};
+
+struct ProblemSummary {
+  int unknowns = 0;       ///< free tangent numbers
+  int fixed = 0;          ///< eliminated ones
+  int equalities = 0;
+  int inequalities = 0;
+  bool bounded_unknowns = false;
+  std::vector<RowGroup> row_groups;
+};
+
+/// Outputs are caller-owned and left alone when null or empty.
+struct ProblemEvaluation {
+  double* energy = nullptr;
+  Span<double> gradient;   ///< unknowns: of δ ↦ E(q · Exp δ) at 0, or of x ↦ E on a chart
+  Span<double> rows;       ///< rows
+  Span<double> jacobian;   ///< in the order of `jacobian_pattern`
+};
+
+/// The same problem for solvers of Rⁿ: coordinates x ∈ Rⁿ around a base point, x = 0 at the base on rotations and
+/// directions, the number itself elsewhere. Patterns, rows and bounds are the problem's.
+class EuclideanProblem {
+ public:
+  virtual ~EuclideanProblem() = default;
+  virtual void start(Span<double> x) const noexcept = 0;                     ///< x of the base point
+  virtual void state(Span<const double> x, Span<double> q) const noexcept = 0;
+  virtual Status evaluate(Span<const double> x, const ProblemEvaluation& evaluation) noexcept = 0;
+  /// Lower triangle of energy_factor·∇²E + Σ multiplier_r ∇²r, with the chart's own second derivatives.
+  virtual Status lagrangian_hessian(Span<const double> x, double energy_factor, Span<const double> multipliers,
+                                    Span<double> values) noexcept = 0;
+  /// A block has turned so far (more than π/2) that the chart must be centred anew.
+  virtual bool recentre_due(Span<const double> x) const noexcept = 0;
+};
+
+/// What a solver sees: minimise E(q) over a product of manifolds subject to row_lower ≤ r(q) ≤ row_upper and
+/// lower ≤ u ≤ upper for the real unknowns. Multipliers λ belong to L = E + λᵀr: λ ≥ 0 on an active upper bound.
+/// Every second derivative is a Taylor coefficient of δ ↦ f(q · Exp δ) at 0.
+class Problem {
+ public:
+  virtual ~Problem() = default;
+
+  virtual const ProblemSummary& summary() const noexcept = 0;
+  virtual int unknowns() const noexcept = 0;     ///< n
+  virtual int coordinates() const noexcept = 0;  ///< numbers in q
+  virtual int rows() const noexcept = 0;         ///< m; closure rows first
+  virtual Span<const double> row_lower() const noexcept = 0;
+  virtual Span<const double> row_upper() const noexcept = 0;
+  virtual Span<const double> lower() const noexcept = 0;  ///< n, of the real unknowns' values; −∞ elsewhere
+  virtual Span<const double> upper() const noexcept = 0;
+  virtual SparsityPattern jacobian_pattern() const noexcept = 0;  ///< outer: rows
+  /// Lower triangle; outer: columns. Holds every pair of unknowns that one row of a constraint reads, so that JᵀJ of
+  /// such rows can be added in place.
+  virtual SparsityPattern hessian_pattern() const noexcept = 0;
+  /// Unknowns 0…n−1 and rows n…n+m−1 in an order along the curves, each row after the unknowns it reads.
+  virtual Span<const int> order() const noexcept = 0;
+  /// Length (mm) that turns a tangent number's gradient into a force: 1 for translations, the mean adjacent edge
+  /// length for rotations. n entries.
+  virtual Span<const double> stationarity_scale() const noexcept = 0;
+
+  virtual Status evaluate(Span<const double> q, const ProblemEvaluation& evaluation) noexcept = 0;
+  virtual Status lagrangian_hessian(Span<const double> q, double energy_factor, Span<const double> multipliers,
+                                    Span<double> values) noexcept = 0;
+  /// The value of the real unknowns (n; 0 for the others), for bounds.
+  virtual void values(Span<const double> q, Span<double> out) const noexcept = 0;
+  virtual void retract(Span<const double> q, Span<const double> delta, Span<double> out) const noexcept = 0;
+
+  /// Moves the reference of the step guard and of the closest-point searches to q. Until the next call, `evaluate`
+  /// answers `refused` where a wire node has moved, relative to its wall, by more than `guard` of its clearance.
+  virtual Status accept(Span<const double> q) noexcept = 0;
+  virtual void set_guard(double fraction_of_clearance) noexcept = 0;  ///< infinity: no guard
+  virtual bool epoch_due() const noexcept = 0;
+  /// Binds rows anew at the accepted point: patterns and orders change. Row count and meaning stay.
+  virtual Status new_epoch() noexcept = 0;
+  virtual int epochs() const noexcept = 0;
+
+  virtual std::unique_ptr<EuclideanProblem> chart(Span<const double> base) = 0;
+};
+
+}  // namespace bowstring

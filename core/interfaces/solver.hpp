@@ -1,0 +1,68 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/interfaces/problem.hpp"
+
+namespace bowstring {
+
+struct IterationRecord {
+  int iteration = 0;
+  double energy = 0.0;        ///< N mm
+  double stationarity = 0.0;  ///< N, as the solver measures it
+  double penetration = 0.0;   ///< mm, largest violation of a row
+  double step = 0.0;          ///< fraction of the full step that was taken
+};
+
+/// What every solver is told.
+struct SolverContext {
+  /// Called after each iteration; false asks the solver to stop with its best point (`interrupted`).
+  std::function<bool(const IterationRecord&)> on_iteration;
+  Span<const double> multipliers;  ///< m, to start from; may be empty
+};
+
+/// What the solver believes. The kernel judges for itself.
+enum class Claim : int { optimal, stalled, infeasible, diverged, failed };
+
+struct SolverResult {
+  Claim claim = Claim::failed;
+  std::string reason;
+  std::vector<double> q;            ///< best point, coordinates
+  std::vector<double> multipliers;  ///< m, or empty where the method has none
+  int iterations = 0;
+  int factorizations = 0;
+  int evaluations = 0;
+  double evaluation_seconds = 0.0;     ///< in the problem's evaluations
+  double factorization_seconds = 0.0;  ///< in factorizations and solves; 0 where the backend hides it
+  std::vector<IterationRecord> history;
+};
+
+struct SolverTraits {
+  bool equalities = true;    ///< takes equality rows
+  bool inequalities = true;  ///< takes inequality rows
+  bool bounds = true;        ///< takes bounds on unknowns
+  /// The contact window that suits it: the larger of so many segments each side and so many mm.
+  int window_segments = 2;
+  double window_length = 0.0;
+};
+
+/// kind `solver`.
+class Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual SolverTraits traits() const noexcept = 0;
+  /// `unsupported` with a reason refuses the problem before anything is solved.
+  virtual Status can(const ProblemSummary& problem) const noexcept = 0;
+  virtual Status solve(Problem& problem, Span<const double> start, const SolverContext& context,
+                       SolverResult& out) noexcept = 0;
+  /// Lends the last factorization: solves the KKT system at the result for a right-hand side of n + m numbers.
+  virtual Status solve_kkt(Span<const double> right_hand_side, Span<double> out) noexcept {
+    (void)right_hand_side;
+    (void)out;
+    return Status::failure(Code::unsupported, "this solver lends no factorization");
+  }
+};
+
+}  // namespace bowstring

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/composition/composition.hpp"
+#include "core/interfaces/constraint.hpp"
+#include "core/interfaces/energy.hpp"
+#include "core/interfaces/geometry.hpp"
+#include "core/interfaces/kinematics.hpp"
+#include "core/interfaces/solver.hpp"
+
+namespace bowstring {
+
+/// A component made by a plugin's factory; its destructor is the plugin's.
+template <class Interface>
+using Owned = std::unique_ptr<Interface, Destructor>;
+
+/// Runs the factory of a choice. On failure the pointer is null and `status` says why, naming the plugin; an
+/// exception that a factory lets through becomes `failed`.
+template <class Interface>
+Owned<Interface> create(const ComponentChoice& choice, Status& status) {
+  void* made = nullptr;
+  try {
+    status = choice.descriptor->create(choice.parameters, &made);
+  } catch (const std::exception& error) {
+    status = Status::failure(Code::failed, std::string("its factory threw: ") + error.what());
+  } catch (...) {
+    status = Status::failure(Code::failed, "its factory threw something that is no std::exception");
+  }
+  if (status.ok() && made == nullptr) status = Status::failure(Code::failed, "its factory returned nothing");
+  if (!status.ok()) {
+    status.text = std::string(kind_name(choice.kind)) + " '" + choice.name + "': " + status.text;
+    made = nullptr;
+  }
+  return Owned<Interface>(static_cast<Interface*>(made), choice.descriptor->destroy);
+}
+
+/// One curve of the scene with what the composition, the geometry and its kinematics say of it.
+struct Curve {
+  std::string name;
+  CurveView view;                       ///< points into the vectors below
+  std::vector<double> reference, start, edge_length, fraction, arc;
+  std::vector<double> radius;           ///< nodal; empty where none is known
+  std::vector<PointData> data;          ///< the geometry's, one value per node
+  std::vector<std::string> label;
+  EndType end_type[2] = {EndType::free, EndType::free};
+  std::string end_position[2];          ///< where the composition says so
+  int along = -1;                       ///< the vessel that a wire starts along
+  std::string kinematics_name;
+  Owned<Kinematics> kinematics{nullptr, nullptr};
+  Needs needs;
+  KinematicsDeclaration declaration;
+  int coordinate_begin = 0, coordinates = 0;  ///< slice of q
+  int unknown_begin = 0, unknowns = 0;        ///< slice of the tangent numbers, fixed ones included
+  const SiteDeclaration* site(Site which) const noexcept;
+};
+
+struct LawUse {
+  const Law* law = nullptr;
+  LawDescription description;
+  std::vector<std::vector<double>> parameters;  ///< sampled at the law's places
+};
+
+struct EnergyUse {
+  std::string label, plugin;
+  int curve = 0;
+  ParameterSet parameters;
+  Owned<Energy> energy{nullptr, nullptr};
+  EnergyDeclaration declaration;
+  std::vector<LawUse> laws;
+};
+
+struct ConstraintUse {
+  std::string label, plugin;
+  Owned<Constraint> constraint{nullptr, nullptr};
+  ConstraintScene scene;
+  RowDeclaration rows;
+};
+
+/// Everything that will be assembled. Curves first the vessels, then the wires, in the composition's order.
+struct Scene {
+  int dimension = 3;
+  std::vector<std::unique_ptr<Curve>> curves;
+  std::vector<EnergyUse> energies;
+  std::vector<ConstraintUse> constraints;
+  int coordinates = 0, unknowns = 0;
+  std::vector<std::string> warnings;
+  std::vector<std::string> without_effect;
+
+  const Curve* find(const std::string& name) const noexcept;
+  std::vector<double> start_coordinates() const;
+  std::vector<double> reference_coordinates() const;
+};
+
+struct SceneOutcome {
+  std::unique_ptr<Scene> scene;
+  std::vector<InputError> errors;   ///< of the input (exit code 2)
+  Status plugin_failure;            ///< of a plugin (exit code 3)
+};
+
+/// Builds curves, samples profiles, asks energies for their needs, kinematics for their fields and constraints for
+/// their rows. `traits` are the solver's: they set the default contact window.
+SceneOutcome build_scene(const Composition& composition, const SolverTraits& traits);
+
+/// A profile at arc coordinates `arc` of a curve of length `length`, with the geometry's data and labels at the
+/// coordinates `node_arc`. Answers `invalid_input` naming an unknown column or segment with what there is.
+Status sample_profile(const Profile& profile, const Curve& curve, const std::vector<double>& arc,
+                      std::vector<double>& out);
+
+}  // namespace bowstring

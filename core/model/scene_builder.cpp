@@ -1,0 +1,547 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/contact/centerline.hpp"
+#include "core/curve/arc_length.hpp"
+#include "core/curve/spline_curve.hpp"
+#include "core/model/manifold.hpp"
+#include "core/model/scene.hpp"
+
+namespace bowstring {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double largest_tube_curvature = 0.8;  // R κ from which a tube counts as folded into itself
+
+std::string number(double value, int digits = 4) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.*g", digits, value);
+  return text;
+}
+
+std::string point_text(const double* p, int dimension) {
+  std::string text = "(";
+  for (int k = 0; k < dimension; ++k) text += (k > 0 ? ", " : "") + number(p[k], 5);
+  return text + ") mm";
+}
+
+/// `nodes` points evenly spaced in arc length along the cubic spline through the given ones, ends kept.
+std::vector<double> resample(const std::vector<double>& points, int dimension, int nodes) {
+  SplineFit fit;
+  const Status status = fit_spline(chord_parameters(points, dimension), points, dimension, 3, 0.0, fit);
+  std::vector<double> out(at(nodes * dimension));
+  if (status.ok()) {
+    const std::vector<double> parameters = fit.curve.arc_length().even_parameters(nodes);
+    for (int i = 0; i < nodes; ++i) fit.curve.evaluate(parameters[at(i)], 0, out.data() + at(i * dimension));
+  } else {  // three points carry no cubic spline
+    const std::vector<double> arc = polyline_arc(points, dimension);
+    const std::vector<double> stations = even_stations(arc.back(), nodes);
+    for (int k = 0; k < dimension; ++k) {
+      std::vector<double> coordinate;
+      for (std::size_t i = at(k); i < points.size(); i += at(dimension)) coordinate.push_back(points[i]);
+      for (int i = 0; i < nodes; ++i) out[at(i * dimension + k)] = interpolate_linearly(arc, coordinate, stations[at(i)]);
+    }
+  }
+  std::copy_n(points.begin(), dimension, out.begin());
+  std::copy_n(points.end() - dimension, dimension, out.end() - dimension);
+  return out;
+}
+
+class Builder {
+ public:
+  Builder(const Composition& composition, const SolverTraits& traits)
+      : composition_(composition), traits_(traits), scene_(std::make_unique<Scene>()) {
+    scene_->dimension = composition.dimension;
+  }
+
+  SceneOutcome build() {
+    for (const VesselTable& table : composition_.vessels) add_vessel(table);
+    if (going()) {
+      for (const WireTable& table : composition_.wires) add_wire(table);
+    }
+    if (going()) declare_energies();
+    if (going()) declare_kinematics();
+    if (going()) sample_laws();
+    if (going()) declare_constraints();
+    if (!going()) scene_.reset();
+    return {std::move(scene_), std::move(errors_), std::move(plugin_failure_)};
+  }
+
+ private:
+  bool going() const { return errors_.empty() && plugin_failure_.ok(); }
+
+  void error(const std::string& position, std::string found, std::string expected, std::string mend) {
+    errors_.push_back({position, std::move(found), std::move(expected), std::move(mend)});
+  }
+
+  /// Sorts a component's refusal into the user's errors or the plugin's failures.
+  bool passed(const Status& status, const ComponentChoice& choice) {
+    if (status.ok()) return true;
+    if (status.code == Code::invalid_input || status.code == Code::unsupported) {
+      error(choice.position, status.text, "", "");
+    } else if (plugin_failure_.ok()) {
+      plugin_failure_ = status;
+    }
+    return false;
+  }
+
+  void set_geometry(Curve& curve, CurveGeometry&& geometry);
+  bool check_points(const Curve& curve, const std::string& position);
+  void set_ends(Curve& curve, const EndTable* ends);
+  std::vector<double> end_tangent(const Curve& curve, const EndTable& table, int end,
+                                  const std::vector<double>& from_geometry) const;
+  void finish_view(Curve& curve);
+  void add_vessel(const VesselTable& table);
+  void check_tube(const Curve& curve, const std::string& position);
+  void add_wire(const WireTable& table);
+  void start_wire(Curve& wire, const Curve& vessel, int nodes) const;
+  void check_clearance(const Curve& wire, const Curve& vessel, const std::string& position);
+  void declare_energies();
+  void declare_kinematics();
+  bool check_declaration(const Curve& curve, const ComponentChoice& choice);
+  void sample_laws();
+  bool sample_law(EnergyUse& use, LawUse& law, const ComponentChoice& choice);
+  void declare_constraints();
+  Curve* find(const std::string& name) const {
+    for (const auto& curve : scene_->curves) {
+      if (curve->name == name) return curve.get();
+    }
+    return nullptr;
+  }
+  const ComponentChoice& kinematics_choice(std::size_t curve) const {
+    return curve < composition_.vessels.size() ? composition_.vessels[curve].kinematics
+                                               : composition_.wires[curve - composition_.vessels.size()].kinematics;
+  }
+
+  const Composition& composition_;
+  SolverTraits traits_;
+  std::unique_ptr<Scene> scene_;
+  std::vector<InputError> errors_;
+  Status plugin_failure_;
+  std::vector<double> tangents_[2];   // of the geometry that is being read
+};
+
+void Builder::set_geometry(Curve& curve, CurveGeometry&& geometry) {
+  curve.view.dimension = composition_.dimension;
+  curve.view.nodes = static_cast<int>(geometry.points.size()) / composition_.dimension;
+  curve.reference = std::move(geometry.points);
+  curve.start = curve.reference;
+  curve.data = std::move(geometry.data);
+  curve.label = std::move(geometry.label);
+  tangents_[0] = std::move(geometry.first_tangent);
+  tangents_[1] = std::move(geometry.last_tangent);
+}
+
+bool Builder::check_points(const Curve& curve, const std::string& position) {
+  const int d = composition_.dimension;
+  if (curve.view.nodes < 3) {
+    error(position, "a geometry of " + std::to_string(curve.view.nodes) + " nodes for '" + curve.name + "'",
+          "at least 3", "");
+    return false;
+  }
+  for (int i = 0; i < curve.view.nodes; ++i) {
+    const double* p = curve.reference.data() + at(i * d);
+    for (int k = 0; k < d; ++k) {
+      if (std::isfinite(p[k])) continue;
+      error(position, "a coordinate that is not a finite number at node " + std::to_string(i) + " of '" + curve.name + "'",
+            "finite coordinates", "");
+      return false;
+    }
+    if (i == 0) continue;
+    double squared = 0.0;
+    for (int k = 0; k < d; ++k) squared += (p[k] - p[k - d]) * (p[k] - p[k - d]);
+    if (squared > 0.0) continue;
+    error(position, "nodes " + std::to_string(i - 1) + " and " + std::to_string(i) + " of '" + curve.name +
+                        "' coincide at " + point_text(p, d),
+          "nodes apart from each other", "drop one of them or give 'nodes' so that the curve is sampled anew");
+    return false;
+  }
+  return true;
+}
+
+std::vector<double> Builder::end_tangent(const Curve& curve, const EndTable& table, int end,
+                                         const std::vector<double>& from_geometry) const {
+  const int d = composition_.dimension;
+  std::vector<double> tangent(3, 0.0);
+  if (!table.tangent.empty()) {
+    std::copy(table.tangent.begin(), table.tangent.end(), tangent.begin());
+  } else if (!from_geometry.empty()) {
+    std::copy(from_geometry.begin(), from_geometry.end(), tangent.begin());
+  } else {
+    // Derivative at the end of the parabola through the three end nodes, parametrised by chord length.
+    const int n = curve.view.nodes;
+    const int i0 = end == 0 ? 0 : n - 1;
+    const int step = end == 0 ? 1 : -1;
+    const double* p0 = curve.start.data() + at(i0 * d);
+    const double* p1 = curve.start.data() + at((i0 + step) * d);
+    const double* p2 = curve.start.data() + at((i0 + 2 * step) * d);
+    double a = 0.0, b = 0.0;
+    for (int k = 0; k < d; ++k) a += (p1[k] - p0[k]) * (p1[k] - p0[k]), b += (p2[k] - p1[k]) * (p2[k] - p1[k]);
+    a = std::sqrt(a), b = std::sqrt(b);
+    for (int k = 0; k < d; ++k) {
+      const double first = (p1[k] - p0[k]) / a;
+      const double second = (p2[k] - p1[k]) / b;
+      tangent[at(k)] = (first + (first - second) * a / (a + b)) * step;
+    }
+  }
+  double squared = 0.0;
+  for (const double t : tangent) squared += t * t;
+  if (squared > 0.0) {
+    for (double& t : tangent) t /= std::sqrt(squared);
+  }
+  return tangent;
+}
+
+void Builder::set_ends(Curve& curve, const EndTable* ends) {
+  for (int e = 0; e < 2; ++e) {
+    EndCondition& end = curve.view.end[e];
+    const EndTable& table = ends[e];
+    curve.end_type[e] = table.type;
+    curve.end_position[e] = table.position;
+    const bool held = table.type != EndType::free;
+    for (int k = 0; k < composition_.dimension; ++k) end.position_held[k] = held;
+    end.rotation_held = table.type == EndType::clamped;
+    end.edge_held = table.type == EndType::held_edge;
+    const std::vector<double> tangent = end_tangent(curve, table, e, tangents_[e]);
+    double squared = 0.0;
+    for (const double t : tangent) squared += t * t;
+    if (squared == 0.0) {
+      error(table.position, "a tangent without a direction at the " + std::string(e == 0 ? "first" : "last") +
+                                " end of '" + curve.name + "'",
+            "a vector that is not zero", "");
+    }
+    std::copy(tangent.begin(), tangent.end(), end.tangent);
+  }
+}
+
+void Builder::finish_view(Curve& curve) {
+  const int d = composition_.dimension;
+  const int edges = curve.view.nodes - 1;
+  curve.arc = polyline_arc(curve.start, d);
+  curve.edge_length.clear();
+  for (int i = 0; i < edges; ++i) curve.edge_length.push_back(curve.arc[at(i + 1)] - curve.arc[at(i)]);
+
+  curve.fraction.assign(at(edges), 1.0);
+  for (int e = 0; e < 2; ++e) {
+    if (!curve.view.end[e].edge_held) continue;
+    const int edge = e == 0 ? 0 : edges - 1;
+    curve.fraction[at(edge)] = 0.0;
+    curve.view.held_length += curve.edge_length[at(edge)];
+  }
+  double sum = 0.0;
+  for (const double f : curve.fraction) sum += f;
+  for (double& f : curve.fraction) f /= std::max(sum, 1.0);
+  curve.view.start_length = curve.arc.back() - curve.view.held_length;
+
+  double squared = 0.0;
+  for (int k = 0; k < d; ++k) {
+    const double difference = curve.start[at(edges * d + k)] - curve.start[at(k)];
+    squared += difference * difference;
+  }
+  curve.view.end_distance = std::sqrt(squared);
+  curve.view.index = static_cast<int>(scene_->curves.size());
+  curve.view.name = curve.name.c_str();
+  curve.view.reference = curve.reference.data();
+  curve.view.start = curve.start.data();
+  curve.view.edge_length = curve.edge_length.data();
+  curve.view.fraction = curve.fraction.data();
+  curve.view.arc = curve.arc.data();
+}
+
+void Builder::check_tube(const Curve& curve, const std::string& position) {
+  contact::Centerline tube;
+  tube.dimension = composition_.dimension;
+  tube.nodes = curve.view.nodes;
+  tube.points = curve.reference.data();
+  tube.radius = curve.radius.data();
+  const contact::NodeMaximum fold = contact::tube_folds(tube);
+  if (fold.value < largest_tube_curvature) return;
+  error(position,
+        "the tube of vessel '" + curve.name + "' folds into itself at s = " + number(curve.arc[at(fold.node)]) +
+            " mm, " + point_text(curve.reference.data() + at(fold.node * composition_.dimension), composition_.dimension) +
+            ": radius times curvature is " + number(fold.value, 3) + " (radius " +
+            number(curve.radius[at(fold.node)], 3) + " mm, bend radius " +
+            number(curve.radius[at(fold.node)] / fold.value, 3) + " mm)",
+        "less than " + number(largest_tube_curvature) + " everywhere",
+        "smooth the centerline (geometry key 'smoothing') or sample it with fewer 'nodes'");
+}
+
+void Builder::add_vessel(const VesselTable& table) {
+  auto curve = std::make_unique<Curve>();
+  curve->name = table.name;
+  curve->kinematics_name = table.kinematics.name;
+  curve->view.kind = CurveKind::vessel;
+  curve->view.extension = Extension::stretching;
+  curve->view.rigid = table.rigid;
+
+  Status status;
+  const auto geometry = create<Geometry>(table.geometry, status);
+  if (!passed(status, table.geometry)) return;
+  CurveGraph graph;
+  status = geometry->build(composition_.dimension, graph);
+  if (!passed(status, table.geometry)) return;
+  if (graph.curves.size() != 1) {
+    error(table.geometry.position, "a geometry of " + std::to_string(graph.curves.size()) + " curves for vessel '" +
+                                       table.name + "'",
+          "one curve", "");
+    return;
+  }
+  scene_->warnings.insert(scene_->warnings.end(), graph.warnings.begin(), graph.warnings.end());
+  set_geometry(*curve, std::move(graph.curves.front()));
+  if (!check_points(*curve, table.geometry.position)) return;
+  set_ends(*curve, table.end);
+  finish_view(*curve);
+
+  Profile radius;
+  bool known = table.radius.has_value();
+  if (known) {
+    radius = table.radius->profile;
+  } else if (std::any_of(curve->data.begin(), curve->data.end(), [](const PointData& d) { return d.name == "radius_mm"; })) {
+    radius.form = Profile::Form::column;
+    radius.column = "radius_mm";
+    known = true;
+  }
+  if (known) {
+    std::vector<double> sampled;
+    status = sample_profile(radius, *curve, curve->arc, sampled);
+    const std::string& position = table.radius ? table.radius->position : table.geometry.position;
+    if (!status.ok()) {
+      error(position, status.text, "", "");
+    } else {
+      curve->radius = std::move(sampled);
+      const auto smallest = std::min_element(curve->radius.begin(), curve->radius.end());
+      if (!(*smallest > 0.0)) {
+        error(position, "a lumen radius of " + number(*smallest) + " mm at s = " +
+                            number(curve->arc[static_cast<std::size_t>(smallest - curve->radius.begin())]) + " mm of '" +
+                            curve->name + "'",
+              "a positive one everywhere", "");
+      } else {
+        check_tube(*curve, position);
+      }
+    }
+  }
+  scene_->curves.push_back(std::move(curve));
+}
+
+void Builder::start_wire(Curve& wire, const Curve& vessel, int nodes) const {
+  const int d = composition_.dimension;
+  wire.along = vessel.view.index;
+  wire.view.dimension = d;
+  wire.view.nodes = nodes;
+  if (nodes == vessel.view.nodes) {
+    wire.reference = vessel.reference;
+  } else {
+    wire.reference = resample(vessel.reference, d, nodes);
+  }
+  wire.start = wire.reference;
+}
+
+void Builder::check_clearance(const Curve& wire, const Curve& vessel, const std::string& position) {
+  if (vessel.radius.empty() || wire.radius.empty()) return;
+  const double stretch = vessel.arc.back() / wire.arc.back();
+  double worst = 0.0;
+  int node = -1;
+  for (int i = 0; i < wire.view.nodes; ++i) {
+    const double lumen = interpolate_linearly(vessel.arc, vessel.radius, wire.arc[at(i)] * stretch);
+    const double excess = wire.radius[at(i)] - lumen;
+    if (excess < worst) continue;
+    worst = excess;
+    node = i;
+  }
+  if (node < 0) return;
+  error(position,
+        "wire '" + wire.name + "' (radius " + number(wire.radius[at(node)]) + " mm) is as wide as the lumen of '" +
+            vessel.name + "' or wider, by " + number(worst) + " mm at s = " + number(wire.arc[at(node)] * stretch) + " mm",
+        "a wire radius smaller than the lumen's everywhere",
+        "reduce the wire's radius, or use a constraint without clearance");
+}
+
+void Builder::add_wire(const WireTable& table) {
+  auto curve = std::make_unique<Curve>();
+  curve->name = table.name;
+  curve->kinematics_name = table.kinematics.name;
+  curve->view.kind = CurveKind::wire;
+  const Curve* vessel = find(table.vessel);
+  if (vessel == nullptr) {
+    error(table.position, "wire '" + table.name + "' without a vessel", "the name of a vessel that it starts along", "");
+    return;
+  }
+  start_wire(*curve, *vessel, table.nodes > 0 ? table.nodes : vessel->view.nodes);
+  for (int e = 0; e < 2; ++e) {
+    tangents_[e] = std::vector<double>(vessel->view.end[e].tangent, vessel->view.end[e].tangent + 3);
+  }
+  set_ends(*curve, table.end);
+  const bool held = table.end[0].type != EndType::free && table.end[1].type != EndType::free;
+  curve->view.extension = held ? Extension::sliding : Extension::fixed;
+  finish_view(*curve);
+
+  std::vector<double> radius;
+  const Status status = sample_profile(table.radius.profile, *curve, curve->arc, radius);
+  if (!status.ok()) {
+    error(table.radius.position, status.text, "", "");
+  } else {
+    curve->radius = std::move(radius);
+    check_clearance(*curve, *vessel, table.radius.position.empty() ? table.position : table.radius.position);
+  }
+  scene_->curves.push_back(std::move(curve));
+}
+
+void Builder::declare_energies() {
+  for (const EnergyTable& table : composition_.energies) {
+    EnergyUse use;
+    use.label = table.label;
+    use.plugin = table.component.name;
+    use.parameters = table.component.parameters;
+    Curve* curve = find(table.on);
+    use.curve = curve->view.index;
+    Status status;
+    use.energy = create<Energy>(table.component, status);
+    if (!passed(status, table.component)) continue;
+    status = use.energy->declare(curve->view, use.declaration);
+    if (!status.ok()) status.text = "energy '" + table.label + "' on '" + table.on + "': " + status.text;
+    if (!passed(status, table.component)) continue;
+    const Needs& needs = use.declaration.needs;
+    curve->needs.stretch = curve->needs.stretch || needs.stretch;
+    if (needs.material_frames) {
+      curve->needs.material_frames = true;
+      curve->needs.reason += (curve->needs.reason.empty() ? "" : "; ") + needs.reason;
+    }
+    for (const std::string& warning : use.declaration.warnings) scene_->warnings.push_back(warning);
+    for (std::size_t k = 0; k < use.declaration.laws.size(); ++k) {
+      use.laws.push_back({use.declaration.laws[k], use.declaration.descriptions[k], {}});
+    }
+    scene_->energies.push_back(std::move(use));
+  }
+}
+
+bool Builder::check_declaration(const Curve& curve, const ComponentChoice& choice) {
+  const auto broken = [&](const std::string& what) {
+    plugin_failure_ = Status::failure(Code::failed, "kinematics '" + choice.name + "' of '" + curve.name + "' " + what);
+    return false;
+  };
+  for (const FieldDeclaration& field : curve.declaration.fields) {
+    const auto numbers = at(field.count * coordinate_count(field.manifold, field.dimension));
+    const auto tangents = at(field.count * tangent_count(field.manifold, field.dimension));
+    if (field.reference.size() != numbers || field.start.size() != numbers) {
+      return broken("declares field '" + field.name + "' with coordinates that do not fit its count");
+    }
+    if (!field.fixed.empty() && field.fixed.size() != tangents) {
+      return broken("declares field '" + field.name + "' with 'fixed' flags that do not fit its count");
+    }
+  }
+  for (const SiteDeclaration& site : curve.declaration.sites) {
+    const bool stencil_fits = site.stencil.size() == at(site.count * site.width);
+    const bool known = std::all_of(site.stencil.begin(), site.stencil.end(),
+                                   [&](int u) { return u >= -1 && u < curve.unknowns; });
+    if (!stencil_fits || !known || site.values > 8 || site.width > 32) {
+      return broken("declares a site whose stencil does not fit its unknowns");
+    }
+  }
+  if (curve.site(Site::node) == nullptr) return broken("declares no node positions");
+  return true;
+}
+
+void Builder::declare_kinematics() {
+  for (std::size_t c = 0; c < scene_->curves.size(); ++c) {
+    Curve& curve = *scene_->curves[c];
+    const ComponentChoice& choice = kinematics_choice(c);
+    Status status;
+    curve.kinematics = create<Kinematics>(choice, status);
+    if (!passed(status, choice)) continue;
+    status = curve.kinematics->declare(curve.view, curve.needs, curve.declaration);
+    if (!status.ok()) status.text = "kinematics '" + choice.name + "' of '" + curve.name + "': " + status.text;
+    if (!passed(status, choice)) continue;
+    for (const FieldDeclaration& field : curve.declaration.fields) {
+      curve.coordinates += field.count * coordinate_count(field.manifold, field.dimension);
+      curve.unknowns += field.count * tangent_count(field.manifold, field.dimension);
+    }
+    if (!check_declaration(curve, choice)) return;
+    curve.coordinate_begin = scene_->coordinates;
+    curve.unknown_begin = scene_->unknowns;
+    scene_->coordinates += curve.coordinates;
+    scene_->unknowns += curve.unknowns;
+  }
+}
+
+bool Builder::sample_law(EnergyUse& use, LawUse& law, const ComponentChoice& choice) {
+  const Curve& curve = *scene_->curves[at(use.curve)];
+  const SiteDeclaration* site = curve.site(law.description.site);
+  std::vector<double> arc;
+  if (site != nullptr && law.description.places.empty()) arc = site->arc;
+  for (const int place : law.description.places) arc.push_back(site != nullptr ? site->arc.at(at(place)) : 0.0);
+  for (const std::string& key : law.description.parameters) {
+    const ParameterValue& value = use.parameters.at(key);
+    std::vector<double> sampled;
+    if (value.type == ParameterType::profile) {
+      if (curve.view.extension == Extension::sliding && value.profile.form != Profile::Form::constant) {
+        error(value.position.empty() ? choice.position : value.position,
+              "'" + key + "' of energy '" + use.label + "' varies along '" + curve.name + "', whose length slides",
+              "one value along a sliding wire", "give a value, or let the wire end inside the vessel");
+        return false;
+      }
+      const Status status = sample_profile(value.profile, curve, arc, sampled);
+      if (!status.ok()) {
+        error(value.position.empty() ? choice.position : value.position, "'" + key + "': " + status.text, "", "");
+        return false;
+      }
+    } else {
+      sampled.assign(arc.size(), value.number);
+    }
+    law.parameters.push_back(std::move(sampled));
+  }
+  return true;
+}
+
+void Builder::sample_laws() {
+  for (std::size_t e = 0; e < scene_->energies.size(); ++e) {
+    EnergyUse& use = scene_->energies[e];
+    const ComponentChoice& choice = composition_.energies[e].component;
+    for (LawUse& law : use.laws) {
+      if (!sample_law(use, law, choice)) continue;
+      const Curve& curve = *scene_->curves[at(use.curve)];
+      const SiteDeclaration* station = curve.site(Site::station);
+      if (law.description.site == Site::station && !law.description.isotropic && composition_.dimension == 3 &&
+          station != nullptr && station->values - (station->lengths_vary ? 2 : 0) < 3) {
+        error(choice.position, "energy '" + use.label + "' reads a strain vector that kinematics '" +
+                                   curve.kinematics_name + "' of '" + curve.name + "' does not have",
+              "a kinematics with material frames", "use kinematics = \"edge-frames\"");
+      }
+    }
+  }
+}
+
+void Builder::declare_constraints() {
+  for (const ConstraintTable& table : composition_.constraints) {
+    ConstraintUse use;
+    use.label = table.label;
+    use.plugin = table.component.name;
+    Status status;
+    use.constraint = create<Constraint>(table.component, status);
+    if (!passed(status, table.component)) continue;
+    use.scene.dimension = composition_.dimension;
+    for (const std::string& name : table.on) {
+      const Curve& curve = *find(name);
+      use.scene.on.push_back(curve.view);
+      use.scene.radius.push_back(curve.radius.empty() ? nullptr : curve.radius.data());
+    }
+    if (table.on.size() == 2) use.scene.starts_along = find(table.on[0])->along == find(table.on[1])->view.index;
+    use.scene.window_segments = traits_.window_segments;
+    use.scene.window_length = traits_.window_length;
+    status = use.constraint->declare(use.scene, use.rows);
+    if (!status.ok()) status.text = "constraint '" + table.label + "': " + status.text;
+    if (!passed(status, table.component)) continue;
+    for (const std::string& warning : use.rows.warnings) scene_->warnings.push_back(warning);
+    scene_->constraints.push_back(std::move(use));
+  }
+}
+
+}  // namespace
+
+SceneOutcome build_scene(const Composition& composition, const SolverTraits& traits) {
+  return Builder(composition, traits).build();
+}
+
+}  // namespace bowstring

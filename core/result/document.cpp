@@ -1,0 +1,248 @@
+#include "core/result/document.hpp"
+
+#include <cmath>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "core/model/manifold.hpp"
+
+namespace bowstring {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+Json optional(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+/// A finite number, or null: JSON has no other.
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json vector(const double* numbers, int count) {
+  Json out = Json::array();
+  for (int k = 0; k < count; ++k) out.push_back(finite(numbers[k]));
+  return out;
+}
+
+Json numbers(const std::vector<double>& values) { return vector(values.data(), static_cast<int>(values.size())); }
+
+Json rows(const std::vector<double>& values, int per_row) {
+  if (per_row == 1) return numbers(values);
+  Json out = Json::array();
+  for (std::size_t i = 0; i + at(per_row) <= values.size(); i += at(per_row)) {
+    out.push_back(vector(values.data() + i, per_row));
+  }
+  return out;
+}
+
+Json provenance(const Session& session, const Registry& registry) {
+  std::set<std::pair<int, std::string>> named;
+  const Composition& composition = session.composition;
+  const auto add = [&](const ComponentChoice& choice) { named.emplace(static_cast<int>(choice.kind), choice.name); };
+  for (const VesselTable& vessel : composition.vessels) add(vessel.geometry), add(vessel.kinematics);
+  for (const WireTable& wire : composition.wires) add(wire.kinematics);
+  for (const EnergyTable& energy : composition.energies) add(energy.component);
+  for (const ConstraintTable& constraint : composition.constraints) add(constraint.component);
+  add(composition.enforcement);
+  add(composition.solver);
+  Json plugins = Json::array();
+  for (const auto& [kind, name] : named) {
+    const ComponentOrigin origin = registry.origin(static_cast<Kind>(kind), name);
+    plugins.push_back({{"kind", kind_name(static_cast<Kind>(kind))},
+                       {"name", name},
+                       {"file", origin.file},
+                       {"sha256", origin.sha256},
+                       {"abi_tag", origin.abi_tag}});
+  }
+  return {{"version", bowstring_version}, {"interface_version", interface_version}, {"plugins", plugins}};
+}
+
+const char* manifold_name(Manifold manifold) {
+  switch (manifold) {
+    case Manifold::real: return "R";
+    case Manifold::vector: return "R^n";
+    case Manifold::circle: return "S1";
+    case Manifold::direction: return "S2";
+    case Manifold::rotation: break;
+  }
+  return "SO3";
+}
+
+Json problem(const Session& session) {
+  const ProblemSummary& summary = session.assembly->summary();
+  Json fields = Json::array();
+  for (const auto& curve : session.scene->curves) {
+    for (const FieldDeclaration& field : curve->declaration.fields) {
+      int free = 0;
+      const int tangents = tangent_count(field.manifold, field.dimension);
+      for (int u = 0; u < field.count * tangents; ++u) free += field.fixed.empty() || field.fixed[at(u)] == 0;
+      fields.push_back({{"name", curve->name + "." + field.name},
+                        {"manifold", manifold_name(field.manifold)},
+                        {"count", field.count},
+                        {"unknowns", free},
+                        {"reason", field.reason}});
+    }
+  }
+  return {{"unknowns", summary.unknowns},
+          {"fixed", summary.fixed},
+          {"inequalities", summary.inequalities},
+          {"equalities", summary.equalities},
+          {"fields", fields}};
+}
+
+Json solver(const Session& session, const Solution& solution) {
+  const SolverResult& result = solution.solver;
+  Json history = Json::array();
+  for (const IterationRecord& record : result.history) {
+    history.push_back({{"iteration", record.iteration},
+                       {"energy", finite(record.energy)},
+                       {"stationarity", finite(record.stationarity)},
+                       {"penetration", finite(record.penetration)},
+                       {"step", finite(record.step)}});
+  }
+  const Seconds& seconds = session.seconds;
+  return {{"name", session.composition.solver.name},
+          {"claim", result.reason},
+          {"iterations", result.iterations},
+          {"factorizations", result.factorizations > 0 ? Json(result.factorizations) : Json(nullptr)},
+          {"evaluations", result.evaluations},
+          {"epochs", session.assembly->epochs()},
+          {"history", history},
+          {"seconds",
+           {{"load", seconds.load},
+            {"setup", seconds.setup},
+            {"solve", seconds.solve},
+            {"total", seconds.total},
+            {"evaluation", result.evaluation_seconds},
+            {"factorization", result.factorization_seconds > 0.0 ? Json(result.factorization_seconds) : Json(nullptr)}}}};
+}
+
+Json certificate(const Certificate& c) {
+  return {{"stationarity", finite(c.stationarity)},
+          {"rounding_floor_N", finite(c.rounding_floor)},
+          {"max_penetration_mm", finite(c.penetration)},
+          {"max_penetration_dense_mm", optional(c.dense_penetration())},
+          {"min_stretch", finite(c.minimum_stretch)},
+          {"max_stretch", finite(c.maximum_stretch)},
+          {"complementarity", finite(c.complementarity)},
+          {"min_multiplier", finite(c.minimum_multiplier)},
+          {"second_order", nullptr},
+          {"weakly_active", c.weakly_active},
+          {"folds", c.folds},
+          {"crossings", c.crossings},
+          {"verdict", verdict_name(c.verdict)}};
+}
+
+Json quantities(const Quantities& q) {
+  return {{"peak_displacement_mm", optional(q.peak_displacement)},
+          {"mean_displacement_mm", optional(q.mean_displacement)},
+          {"mean_displacement_nodes_mm", optional(q.mean_displacement_nodes)},
+          {"wire_length_mm", optional(q.wire_length)},
+          {"vessel_length_change_mm", optional(q.vessel_length_change)},
+          {"arc_to_chord", optional(q.arc_to_chord)},
+          {"contact_count", q.contact_count},
+          {"contact_force_N", q.contact_force},
+          {"line_load_peak_N_per_mm", q.line_load_peak},
+          {"line_load_integral_N", q.line_load_integral}};
+}
+
+Json curve(const Curve& curve, const CurveRecord& record) {
+  const int d = curve.view.dimension;
+  return {{"name", curve.name},
+          {"kind", curve.view.kind == CurveKind::wire ? "wire" : "vessel"},
+          {"s_mm", numbers(record.arc)},
+          {"points", rows(record.points, d)},
+          {"reference_points", rows(curve.reference, d)},
+          {"frames", rows(record.frames, 4)},
+          {"radius_mm", curve.radius.empty() ? Json(nullptr) : numbers(curve.radius)},
+          {"curvature_per_mm", numbers(record.curvature)},
+          {"twist_per_mm", record.twist.empty() ? Json(nullptr) : numbers(record.twist)},
+          {"moment_N_mm", rows(record.moment, d == 3 ? 3 : 1)},
+          {"internal_force_N", record.internal_force.empty() ? Json(nullptr) : rows(record.internal_force, d)}};
+}
+
+Json contacts(const Scene& scene, const Readings& readings) {
+  Json out = Json::array();
+  for (const ContactRecord& contact : readings.contacts) {
+    const double edge = std::floor(contact.wire_coordinate);
+    out.push_back({{"wire", scene.curves[at(contact.wire)]->name},
+                   {"vessel", scene.curves[at(contact.vessel)]->name},
+                   {"row", contact.row},
+                   {"wire_edge", static_cast<int>(edge)},
+                   {"t", contact.wire_coordinate - edge},
+                   {"s_mm", contact.wire_arc},
+                   {"vessel_s_mm", contact.vessel_arc},
+                   {"gap_mm", finite(contact.gap)},
+                   {"force_N", finite(contact.force)},
+                   {"direction", vector(contact.direction, scene.dimension)}});
+  }
+  return out;
+}
+
+Json supports(const Scene& scene, const Readings& readings) {
+  Json out = Json::array();
+  for (const SupportRecord& support : readings.supports) {
+    Json entry = {{"on", scene.curves[at(support.curve)]->name},
+                  {"end", support.end == 0 ? "first" : "last"},
+                  {"force_N", vector(support.force, scene.dimension)}};
+    entry["moment_N_mm"] = scene.dimension == 2 ? finite(support.moment[2]) : vector(support.moment, 3);
+    out.push_back(std::move(entry));
+  }
+  return out;
+}
+
+Json state(const Session& session, const Solution& solution) {
+  Json fields = Json::object();
+  for (const auto& curve : session.scene->curves) {
+    const double* q = solution.q.data() + curve->coordinate_begin;
+    for (const FieldDeclaration& field : curve->declaration.fields) {
+      const int count = field.count * coordinate_count(field.manifold, field.dimension);
+      fields[curve->name + "." + field.name] = vector(q, count);
+      q += count;
+    }
+  }
+  Json multipliers = Json::object();
+  for (const RowOrigin& group : session.assembly->row_origins()) {
+    multipliers[group.name] = vector(solution.multipliers.data() + group.first, group.count);
+  }
+  return {{"fields", fields}, {"multipliers", multipliers}};
+}
+
+}  // namespace
+
+std::string result_document(const Session& session, const Solution& solution, const Readings& readings,
+                            const Registry& registry) {
+  const Scene& scene = *session.scene;
+  Json energy = Json::object();
+  double total = 0.0;
+  for (std::size_t e = 0; e < readings.term_energy.size(); ++e) {
+    energy[scene.energies[e].label] = finite(readings.term_energy[e]);
+    total += readings.term_energy[e];
+  }
+  energy["total"] = finite(total);
+  Json curves = Json::array();
+  for (const CurveRecord& record : readings.curves) curves.push_back(curve(*scene.curves[at(record.curve)], record));
+
+  Json document;
+  document["format"] = "bowstring.result/1";
+  document["status"] = verdict_name(solution.certificate.verdict);
+  document["reason"] = solution.certificate.reason;
+  document["warnings"] = solution.warnings;
+  document["composition"] = Json::parse(session.composition.resolved_json);
+  document["provenance"] = provenance(session, registry);
+  document["problem"] = problem(session);
+  document["solver"] = solver(session, solution);
+  document["certificate"] = certificate(solution.certificate);
+  document["energy"] = std::move(energy);
+  document["quantities"] = quantities(readings.quantities);
+  document["curves"] = std::move(curves);
+  document["contacts"] = contacts(scene, readings);
+  document["supports"] = supports(scene, readings);
+  document["state"] = state(session, solution);
+  document["equilibria"] = Json::array();
+  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace bowstring

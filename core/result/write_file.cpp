@@ -1,0 +1,50 @@
+#include "core/result/write_file.hpp"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace bowstring {
+
+namespace {
+
+Status problem(const std::string& what, const std::string& file) {
+  return Status::failure(Code::invalid_input, what + " '" + file + "': " + std::strerror(errno));
+}
+
+}  // namespace
+
+std::string temporary_name(const std::string& file) { return file + ".part-" + std::to_string(::getpid()); }
+
+Status publish_file(const std::string& temporary, const std::string& file) {
+  if (std::rename(temporary.c_str(), file.c_str()) == 0) return {};
+  Status status = problem("cannot rename to", file);
+  std::remove(temporary.c_str());
+  return status;
+}
+
+Status write_file(const std::string& file, const std::string& content) {
+  const std::string temporary = temporary_name(file);
+  const int handle = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (handle < 0) return problem("cannot write", file);
+  std::size_t written = 0;
+  while (written < content.size()) {
+    const ssize_t count = ::write(handle, content.data() + written, content.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    written += static_cast<std::size_t>(count);
+  }
+  const bool complete = written == content.size() && ::fsync(handle) == 0;
+  Status status = complete ? Status{} : problem("cannot write", file);
+  ::close(handle);
+  if (!complete) {
+    std::remove(temporary.c_str());
+    return status;
+  }
+  return publish_file(temporary, file);
+}
+
+}  // namespace bowstring

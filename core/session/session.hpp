@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/assembly/assembly.hpp"
+#include "core/certificate/certificate.hpp"
+#include "core/composition/composition.hpp"
+#include "core/interfaces/enforcement.hpp"
+
+namespace bowstring {
+
+struct Seconds {
+  double load = 0.0;    ///< composition read, plugins opened
+  double setup = 0.0;   ///< scene built, patterns found
+  double solve = 0.0;
+  double total = 0.0;
+};
+
+/// What went wrong before anything could be solved. Errors as values: nothing is thrown to the caller.
+struct Refusal {
+  std::vector<InputError> errors;  ///< the input is wrong
+  Status plugin_failure;           ///< a known plugin could not be loaded or used
+  bool any() const noexcept { return !errors.empty() || !plugin_failure.ok(); }
+};
+
+/// A composition made ready to be solved.
+struct Session {
+  Composition composition;
+  std::unique_ptr<Scene> scene;
+  Owned<Solver> solver{nullptr, nullptr};
+  Owned<Enforcement> enforcement{nullptr, nullptr};
+  std::unique_ptr<Assembly> assembly;
+  Seconds seconds;
+};
+
+/// A solved composition: state, multipliers, and what the kernel found there.
+struct Solution {
+  std::vector<double> q, multipliers;
+  SolverResult solver;
+  Certificate certificate;
+  bool estimated_multipliers = false;   ///< the solver gave none
+  std::vector<std::string> warnings;
+};
+
+/// Loads, checks, builds. On refusal the session is null.
+std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& registry, Refusal& refusal);
+
+/// Solves and certifies. `progress` is called after each iteration; false stops with the best point. A failure of a
+/// plugin during the solution is a verdict of the solution, not an error.
+Solution solve(Session& session, const std::function<bool(const IterationRecord&)>& progress);
+
+}  // namespace bowstring

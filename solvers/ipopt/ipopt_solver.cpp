@@ -1,0 +1,382 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include <IpIpoptApplication.hpp>
+#include <IpIpoptCalculatedQuantities.hpp>
+#include <IpIpoptData.hpp>
+#include <IpOrigIpoptNLP.hpp>
+#include <IpTNLP.hpp>
+#include <IpTNLPAdapter.hpp>
+
+#include "core/interfaces/solver.hpp"
+#include "plugins/sdk/plugin.hpp"
+
+namespace bowstring {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double unbounded = 2e19;       // what Ipopt takes for infinity
+constexpr double first_barrier = 0.1;
+
+constexpr ParameterDeclaration schema[] = {
+    {.key = "tolerance",
+     .type = ParameterType::scalar,
+     .unit = "",
+     .default_text = "1e-8",
+     .description = "absolute target: stationarity in N, rows in mm, complementarity in N mm",
+     .lower = 0.0,
+     .lower_exclusive = true},
+    {.key = "max-iterations",
+     .type = ParameterType::integer,
+     .unit = "",
+     .default_text = "500",
+     .description = "over all epochs",
+     .lower = 1.0},
+    {.key = "time-limit",
+     .type = ParameterType::scalar,
+     .unit = "s",
+     .default_text = "",
+     .description = "wall-clock seconds after which the best point is returned",
+     .lower = 0.0,
+     .lower_exclusive = true},
+    {.key = "hessian",
+     .type = ParameterType::choice,
+     .unit = "",
+     .default_text = "\"exact\"",
+     .description = "second derivatives: exact, or a limited-memory quasi-Newton approximation",
+     .choices = "exact|limited-memory"},
+    {.key = "step-guard",
+     .type = ParameterType::scalar,
+     .unit = "",
+     .default_text = "0.5",
+     .description = "share of its clearance that a wire node may move, relative to its wall, in one step; 0 switches the "
+                    "guard off, and soft wires may then tunnel through the wall",
+     .lower = 0.0},
+};
+
+struct Settings {
+  double tolerance = 1e-8;
+  int max_iterations = 500;
+  double time_limit = std::numeric_limits<double>::infinity();
+  bool exact_hessian = true;
+  double guard = 0.5;
+};
+
+/// MUMPS keeps static state: one Ipopt at a time in a process, from its construction until its destructors have run.
+std::mutex& ipopt_lock() {
+  static std::mutex lock;
+  return lock;
+}
+
+/// Why the intermediate callback ended a run.
+enum class Stop { none, epoch, iterations, time, user };
+
+struct Multipliers {
+  std::vector<double> rows, lower, upper;
+};
+
+/// One chart of one epoch as Ipopt sees it.
+class ChartProgram final : public Ipopt::TNLP {
+ public:
+  ChartProgram(Problem& problem, EuclideanProblem& chart, const Settings& settings, const SolverContext& context,
+               SolverResult& result, Clock::time_point begin)
+      : problem_(problem), chart_(chart), settings_(settings), context_(context), result_(result), begin_(begin),
+        x(static_cast<std::size_t>(problem.unknowns())), q_(static_cast<std::size_t>(problem.coordinates())),
+        rows_(static_cast<std::size_t>(problem.rows())) {
+    chart.start(x);
+  }
+
+  bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian, Ipopt::Index& hessian,
+                    IndexStyleEnum& style) override {
+    n = problem_.unknowns();
+    m = problem_.rows();
+    jacobian = problem_.jacobian_pattern().entries();
+    hessian = problem_.hessian_pattern().entries();
+    style = TNLP::C_STYLE;
+    return true;
+  }
+
+  bool get_bounds_info(Ipopt::Index n, Ipopt::Number* lower, Ipopt::Number* upper, Ipopt::Index m,
+                       Ipopt::Number* row_lower, Ipopt::Number* row_upper) override {
+    const auto clip = [](double bound) { return std::clamp(bound, -unbounded, unbounded); };
+    std::transform(problem_.lower().begin(), problem_.lower().begin() + n, lower, clip);
+    std::transform(problem_.upper().begin(), problem_.upper().begin() + n, upper, clip);
+    std::transform(problem_.row_lower().begin(), problem_.row_lower().begin() + m, row_lower, clip);
+    std::transform(problem_.row_upper().begin(), problem_.row_upper().begin() + m, row_upper, clip);
+    return true;
+  }
+
+  bool get_starting_point(Ipopt::Index n, bool, Ipopt::Number* start, bool init_z, Ipopt::Number* z_lower,
+                          Ipopt::Number* z_upper, Ipopt::Index m, bool init_lambda, Ipopt::Number* lambda) override {
+    std::copy_n(x.begin(), n, start);
+    if (init_z) {
+      std::copy_n(multipliers.lower.begin(), n, z_lower);
+      std::copy_n(multipliers.upper.begin(), n, z_upper);
+    }
+    if (init_lambda) std::copy_n(multipliers.rows.begin(), m, lambda);
+    return true;
+  }
+
+  bool eval_f(Ipopt::Index n, const Ipopt::Number* at, bool, Ipopt::Number& energy) override {
+    ProblemEvaluation evaluation;
+    evaluation.energy = &energy;
+    return evaluate(n, at, evaluation);
+  }
+
+  bool eval_grad_f(Ipopt::Index n, const Ipopt::Number* at, bool, Ipopt::Number* gradient) override {
+    ProblemEvaluation evaluation;
+    evaluation.gradient = {gradient, static_cast<std::size_t>(n)};
+    return evaluate(n, at, evaluation);
+  }
+
+  bool eval_g(Ipopt::Index n, const Ipopt::Number* at, bool, Ipopt::Index m, Ipopt::Number* rows) override {
+    ProblemEvaluation evaluation;
+    evaluation.rows = {rows, static_cast<std::size_t>(m)};
+    return evaluate(n, at, evaluation);
+  }
+
+  bool eval_jac_g(Ipopt::Index n, const Ipopt::Number* at, bool, Ipopt::Index m, Ipopt::Index entries,
+                  Ipopt::Index* row, Ipopt::Index* column, Ipopt::Number* values) override {
+    if (values == nullptr) {
+      const SparsityPattern pattern = problem_.jacobian_pattern();
+      for (int r = 0; r < m; ++r) {
+        for (int k = pattern.begin[static_cast<std::size_t>(r)]; k < pattern.begin[static_cast<std::size_t>(r) + 1]; ++k) {
+          row[k] = r;
+          column[k] = pattern.inner[static_cast<std::size_t>(k)];
+        }
+      }
+      return true;
+    }
+    ProblemEvaluation evaluation;
+    evaluation.jacobian = {values, static_cast<std::size_t>(entries)};
+    return evaluate(n, at, evaluation);
+  }
+
+  bool eval_h(Ipopt::Index n, const Ipopt::Number* at, bool, Ipopt::Number factor, Ipopt::Index m,
+              const Ipopt::Number* lambda, bool, Ipopt::Index entries, Ipopt::Index* row, Ipopt::Index* column,
+              Ipopt::Number* values) override {
+    if (values == nullptr) {
+      const SparsityPattern pattern = problem_.hessian_pattern();
+      for (int c = 0; c < n; ++c) {
+        for (int k = pattern.begin[static_cast<std::size_t>(c)]; k < pattern.begin[static_cast<std::size_t>(c) + 1]; ++k) {
+          row[k] = pattern.inner[static_cast<std::size_t>(k)];
+          column[k] = c;
+        }
+      }
+      return true;
+    }
+    const auto start = Clock::now();
+    const Status status =
+        chart_.lagrangian_hessian({at, static_cast<std::size_t>(n)}, factor, {lambda, static_cast<std::size_t>(m)},
+                                  {values, static_cast<std::size_t>(entries)});
+    result_.evaluation_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    return note(status);
+  }
+
+  bool intermediate_callback(Ipopt::AlgorithmMode mode, Ipopt::Index, Ipopt::Number energy, Ipopt::Number inf_pr,
+                             Ipopt::Number inf_du, Ipopt::Number mu, Ipopt::Number, Ipopt::Number,
+                             Ipopt::Number, Ipopt::Number alpha_pr, Ipopt::Index, const Ipopt::IpoptData* data,
+                             Ipopt::IpoptCalculatedQuantities* quantities) override {
+    barrier = mu;
+    // The first callback of a restart repeats the iterate that the run before ended with.
+    if (!first_callback_ || result_.history.empty()) {
+      const int iteration = result_.history.empty() ? 0 : result_.history.back().iteration + 1;
+      result_.history.push_back({iteration, energy, inf_du, inf_pr, alpha_pr});
+      result_.iterations = iteration;
+      if (context_.on_iteration && !context_.on_iteration(result_.history.back())) stop = Stop::user;
+    }
+    first_callback_ = false;
+    if (mode == Ipopt::RegularMode && read_iterate(*data, *quantities)) {
+      chart_.state(x, q_);
+      note(problem_.accept(q_));
+      if (problem_.epoch_due() || chart_.recentre_due(x)) stop = Stop::epoch;
+    }
+    if (result_.iterations >= settings_.max_iterations) stop = Stop::iterations;
+    if (std::chrono::duration<double>(Clock::now() - begin_).count() > settings_.time_limit) stop = Stop::time;
+    return stop == Stop::none;
+  }
+
+  void finalize_solution(Ipopt::SolverReturn, Ipopt::Index n, const Ipopt::Number* at, const Ipopt::Number* z_lower,
+                         const Ipopt::Number* z_upper, Ipopt::Index m, const Ipopt::Number*,
+                         const Ipopt::Number* lambda, Ipopt::Number, const Ipopt::IpoptData*,
+                         Ipopt::IpoptCalculatedQuantities*) override {
+    x.assign(at, at + n);
+    multipliers.rows.assign(lambda, lambda + m);
+    multipliers.lower.assign(z_lower, z_lower + n);
+    multipliers.upper.assign(z_upper, z_upper + n);
+  }
+
+ private:
+  bool evaluate(Ipopt::Index n, const Ipopt::Number* at, const ProblemEvaluation& evaluation) {
+    const auto start = Clock::now();
+    const Status status = chart_.evaluate({at, static_cast<std::size_t>(n)}, evaluation);
+    result_.evaluation_seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    ++result_.evaluations;
+    return note(status);
+  }
+
+  bool note(const Status& status) {
+    if (status.code == Code::failed && failure.ok()) failure = status;
+    return status.ok();
+  }
+
+  /// The iterate as the user's problem numbers it; false inside Ipopt's restoration problem.
+  bool read_iterate(const Ipopt::IpoptData& data, Ipopt::IpoptCalculatedQuantities& quantities) {
+    auto* nlp = dynamic_cast<Ipopt::OrigIpoptNLP*>(Ipopt::GetRawPtr(quantities.GetIpoptNLP()));
+    if (nlp == nullptr) return false;
+    auto* adapter = dynamic_cast<Ipopt::TNLPAdapter*>(Ipopt::GetRawPtr(nlp->nlp()));
+    if (adapter == nullptr) return false;
+    adapter->ResortX(*data.curr()->x(), x.data());
+    return true;
+  }
+
+  Problem& problem_;
+  EuclideanProblem& chart_;
+  const Settings& settings_;
+  const SolverContext& context_;
+  SolverResult& result_;
+  Clock::time_point begin_;
+  bool first_callback_ = true;
+
+ public:
+  std::vector<double> x;
+  Multipliers multipliers;
+  double barrier = first_barrier;
+  Stop stop = Stop::none;
+  Status failure;
+
+ private:
+  std::vector<double> q_, rows_;
+};
+
+void set_options(Ipopt::OptionsList& options, const Settings& settings, bool warm, double barrier) {
+  options.SetStringValue("linear_solver", "mumps");
+  options.SetStringValue("sb", "yes");
+  options.SetIntegerValue("print_level", 0);
+  options.SetIntegerValue("max_iter", settings.max_iterations + 1);
+  options.SetNumericValue("tol", settings.tolerance);
+  options.SetNumericValue("dual_inf_tol", settings.tolerance);
+  options.SetNumericValue("constr_viol_tol", settings.tolerance);
+  options.SetNumericValue("compl_inf_tol", settings.tolerance);
+  options.SetNumericValue("bound_relax_factor", 0.0);  // rows would be missed by that much otherwise
+  options.SetStringValue("nlp_scaling_method", "none");
+  options.SetStringValue("hessian_approximation", settings.exact_hessian ? "exact" : "limited-memory");
+  options.SetNumericValue("mu_init", barrier);
+  if (warm) {
+    options.SetStringValue("warm_start_init_point", "yes");
+    for (const char* push : {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
+                             "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
+      options.SetNumericValue(push, 1e-9);
+    }
+  }
+}
+
+struct Verdict {
+  Claim claim;
+  std::string reason;
+};
+
+Verdict verdict(Ipopt::ApplicationReturnStatus status) {
+  switch (status) {
+    case Ipopt::Solve_Succeeded: return {Claim::optimal, "Ipopt reached its tolerance"};
+    case Ipopt::Solved_To_Acceptable_Level: return {Claim::optimal, "Ipopt made no more progress near a solution"};
+    case Ipopt::Infeasible_Problem_Detected: return {Claim::infeasible, "Ipopt converged to a point of local infeasibility"};
+    case Ipopt::Search_Direction_Becomes_Too_Small: return {Claim::stalled, "Ipopt's search direction became too small"};
+    case Ipopt::Diverging_Iterates: return {Claim::diverged, "Ipopt's iterates grow without bound"};
+    case Ipopt::Maximum_Iterations_Exceeded: return {Claim::stalled, "the iteration limit was reached"};
+    case Ipopt::Restoration_Failed: return {Claim::stalled, "Ipopt's restoration phase failed"};
+    case Ipopt::Error_In_Step_Computation: return {Claim::stalled, "Ipopt could not compute a step"};
+    case Ipopt::Invalid_Number_Detected: return {Claim::failed, "an evaluation gave no finite number"};
+    default: return {Claim::failed, "Ipopt ended with return code " + std::to_string(static_cast<int>(status))};
+  }
+}
+
+class IpoptSolver final : public Solver {
+ public:
+  explicit IpoptSolver(const ParameterSet& parameters) {
+    settings_.tolerance = parameters.scalar("tolerance");
+    settings_.max_iterations = static_cast<int>(parameters.integer("max-iterations"));
+    if (parameters.has("time-limit")) settings_.time_limit = parameters.scalar("time-limit");
+    settings_.exact_hessian = parameters.text("hessian") == "exact";
+    const double guard = parameters.scalar("step-guard");
+    settings_.guard = guard > 0.0 ? guard : std::numeric_limits<double>::infinity();
+  }
+
+  SolverTraits traits() const noexcept override {
+    SolverTraits traits;
+    traits.window_segments = 2;
+    traits.window_length = 10.0;
+    return traits;
+  }
+
+  Status can(const ProblemSummary& summary) const noexcept override {
+    if (summary.equalities <= summary.unknowns) return {};
+    return guard([&] {
+      throw StatusError(Code::unsupported, "Ipopt takes no problem with more equality rows (" +
+                                               std::to_string(summary.equalities) + ") than unknowns (" +
+                                               std::to_string(summary.unknowns) + ")");
+    });
+  }
+
+  Status solve(Problem& problem, Span<const double> start, const SolverContext& context,
+               SolverResult& out) noexcept override {
+    return guard([&] { run(problem, start, context, out); });
+  }
+
+ private:
+  void run(Problem& problem, Span<const double> start, const SolverContext& context, SolverResult& out) const {
+    const std::lock_guard<std::mutex> lock(ipopt_lock());
+    const auto begin = Clock::now();
+    out.q.assign(start.begin(), start.end());
+    problem.set_guard(settings_.guard);
+    Multipliers multipliers;
+    double barrier = first_barrier;
+    for (bool warm = false;; warm = true) {
+      const std::unique_ptr<EuclideanProblem> chart = problem.chart(out.q);
+      Ipopt::SmartPtr<ChartProgram> program =
+          new ChartProgram(problem, *chart, settings_, context, out, begin);
+      program->multipliers = multipliers;
+      Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
+      application->RethrowNonIpoptException(true);
+      set_options(*application->Options(), settings_, warm, barrier);
+      if (application->Initialize("") != Ipopt::Solve_Succeeded) {
+        throw StatusError(Code::failed, "Ipopt could not be initialised");
+      }
+      const Ipopt::ApplicationReturnStatus status = application->OptimizeTNLP(Ipopt::GetRawPtr(program));
+      chart->state(program->x, out.q);
+      multipliers = program->multipliers;
+      out.multipliers = multipliers.rows;
+      barrier = program->barrier;
+      if (program->stop == Stop::epoch) {
+        if (Status epoch = problem.new_epoch(); !epoch.ok()) throw StatusError(epoch.code, epoch.text);
+        continue;
+      }
+      conclude(*program, status, out);
+      break;
+    }
+    problem.set_guard(std::numeric_limits<double>::infinity());
+  }
+
+  static void conclude(const ChartProgram& program, Ipopt::ApplicationReturnStatus status, SolverResult& out) {
+    Verdict verdict = bowstring::verdict(status);
+    if (program.stop == Stop::iterations) verdict = {Claim::stalled, "the iteration limit was reached"};
+    if (program.stop == Stop::time) verdict = {Claim::stalled, "the time limit was reached"};
+    if (program.stop == Stop::user) verdict = {Claim::stalled, "stopped by the user"};
+    if (verdict.claim != Claim::optimal && !program.failure.ok()) verdict = {Claim::failed, program.failure.text};
+    out.claim = verdict.claim;
+    out.reason = verdict.reason;
+  }
+
+  Settings settings_;
+};
+
+}  // namespace
+}  // namespace bowstring
+
+BOWSTRING_PLUGIN(bowstring::component<bowstring::Solver, bowstring::IpoptSolver>(
+    bowstring::Kind::solver, "ipopt", "Ipopt's filter line-search interior-point method with MUMPS, on a chart",
+    bowstring::schema))

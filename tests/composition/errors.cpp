@@ -1,0 +1,303 @@
+#include <doctest/doctest.h>
+
+#include "tests/composition/workbench.hpp"
+
+using namespace bowstring;
+using test::texts;
+using test::Workbench;
+using Texts = std::vector<std::string>;
+
+namespace {
+
+/// small_scene with a part of it written otherwise.
+std::string scene_with(const std::string& part, const std::string& replacement) {
+  std::string text = test::small_scene;
+  const std::size_t place = text.find(part);
+  REQUIRE(place != std::string::npos);
+  return text.replace(place, part.size(), replacement);
+}
+
+}  // namespace
+
+TEST_CASE("everything that is wrong with a file is said at once, in its order") {
+  Workbench bench;
+  CHECK(bench.errors(R"(schema = 1
+[scene]
+dimension = 2
+[[vessel]]
+name = "iliac"
+geometry = { type = "sinusoid", chord = "150 N", amplitude = nan, nodes = 2 }
+radius = "6 mm"
+[[wire]]
+name = "iliac"
+vessel = "ilac"
+radius = 0
+[[energy]]
+type = "anchorin"
+on = "iliac"
+[[energy]]
+type = "anchoring"
+on = "iliac"
+stiffness = 0.03
+stifness = 0.03
+[solver]
+max-iterations = 2.5
+)") ==
+        Texts{
+            "scene.toml:6:41: wrong unit: 'chord' of geometry 'sinusoid' of vessel 'iliac' is text \"150 N\"; expected "
+            "a quantity in mm, more than 0; write \"150 mm\"",
+            "scene.toml:6:62: 'amplitude' of geometry 'sinusoid' of vessel 'iliac' is number nan, which is not finite; "
+            "expected a finite number; write \"<number> mm\"",
+            "scene.toml:6:75: 'nodes' of geometry 'sinusoid' of vessel 'iliac' is 2, out of bounds; expected at least "
+            "3; write a larger number",
+            "scene.toml:9:8: duplicate name: wire 'iliac', after the vessel at scene.toml:4:1; expected a name for "
+            "each; rename one of the two",
+            "scene.toml:10:10: unknown vessel 'ilac' in 'vessel' of wire 'iliac'; expected one of: iliac; did you "
+            "mean 'iliac'?",
+            "scene.toml:11:10: 'radius' of wire 'iliac' is whole number 0, out of bounds; expected more than 0 mm; "
+            "write a larger number",
+            "scene.toml:13:8: unknown energy 'anchorin'; expected one of: anchoring, axial-tension, point-load, "
+            "vessel-strain, wire-bending; did you mean 'anchoring'?",
+            "scene.toml:18:13: ambiguous unit: 'stiffness' of energy 'anchoring' is the bare number 0.03; expected a "
+            "quantity in N/mm^2 or N/mm; write \"0.03 N/mm^2\" or \"0.03 N/mm\", which mean different things",
+            "scene.toml:19:1: unknown key 'stifness' in energy 'anchoring'; expected one of: type, name, on, "
+            "stiffness; did you mean 'stiffness'?",
+            "scene.toml:21:18: 'max-iterations' of solver 'ipopt' is number 2.5; expected a whole number, at least 1; "
+            "write max-iterations = <whole number>",
+        });
+}
+
+TEST_CASE("a file that cannot be read") {
+  Workbench bench;
+  CHECK(texts(bench.load("none.toml").errors) ==
+        Texts{"none.toml: cannot read the file (No such file or directory); expected a composition in TOML; check the "
+              "path"});
+  bench.write("folder/x.toml", "");
+  CHECK(texts(bench.load("folder").errors) ==
+        Texts{"folder: cannot read the file (it is a folder); expected a composition in TOML; check the path"});
+}
+
+TEST_CASE("the first error of syntax, in the same form") {
+  Workbench bench;
+  CHECK(bench.errors("schema = 1\ntitle = \"a\nb\"\n").front().find("scene.toml:2:") == 0);
+  CHECK(bench.errors("schema = 1\nradius = 10 N\n") ==
+        Texts{"scene.toml:2:13: not TOML: expected a comment or whitespace, saw 'N'; expected valid TOML; mend this "
+              "first: what stands behind it has not been read"});
+  CHECK(bench.errors("schema = 1\n[solver]\n  tolerance = 1\n  tolerance = 2\n") ==
+        Texts{"scene.toml:4:3: duplicate key 'tolerance'; expected each key once; remove one of the two"});
+  CHECK(bench.errors("schema = 1\nx = { a = 1, b = 2, a = 3 }\n") ==
+        Texts{"scene.toml:2:21: duplicate key 'a'; expected each key once; remove one of the two"});
+  CHECK(bench.errors("schema = 1\n[solver]\n[solver]\n").front() ==
+        "scene.toml:3:1: duplicate key 'solver'; expected each key once; remove one of the two");
+}
+
+TEST_CASE("an empty file lacks everything that has no default") {
+  Workbench bench;
+  CHECK(bench.errors("") ==
+        Texts{"scene.toml:1:1: the file has no 'schema'; expected the version of the format that it is written in; add "
+              "schema = 1 at the top",
+              "scene.toml:1:1: the file has no [scene]; expected a table with the scene's dimension; add [scene] with "
+              "dimension = 2 or dimension = 3",
+              "scene.toml:1:1: the scene has no curve; expected a [[vessel]]; add [[vessel]] with name and geometry"});
+}
+
+TEST_CASE("keys that a table must have") {
+  Workbench bench;
+  CHECK(bench.errors("schema = 1\n[scene]\n[[vessel]]\n[[wire]]\n[[energy]]\ntype = \"anchoring\"\n[[energy]]\n"
+                     "[[constraint]]\ntype = \"node-wise-contact\"\n") ==
+        Texts{"scene.toml:2:1: [scene] has no 'dimension'; expected 2 or 3; add dimension = 2 or dimension = 3",
+              "scene.toml:3:1: a vessel without a name; expected every vessel to have one; add name = \"<name>\"",
+              "scene.toml:3:1: a vessel without a name has no 'geometry'; expected a table with the 'type' of a "
+              "geometry; add geometry = { type = \"<geometry>\", … }",
+              "scene.toml:4:1: wire 'wire' has no 'radius'; expected a quantity in mm, more than 0, or a table with "
+              "'table', 'segments' or 'column'; add radius = \"<number> mm\"",
+              "scene.toml:4:1: wire 'wire' has no 'vessel'; expected the vessel that the wire starts along; add vessel "
+              "= \"<name>\"",
+              "scene.toml:5:1: energy 'anchoring' has no 'on'; expected the curve that it acts on; add on = "
+              "\"<curve>\"",
+              "scene.toml:5:1: energy 'anchoring' has no 'stiffness'; expected a quantity in N/mm^2 or N/mm, at least "
+              "0, or a table with 'table', 'segments' or 'column'; add stiffness = \"<number> N/mm^2\" or \"<number> "
+              "N/mm\"",
+              "scene.toml:7:1: energy 'energy' has no 'on'; expected the curve that it acts on; add on = \"<curve>\"",
+              "scene.toml:7:1: energy 'energy' has no 'type'; expected one of: anchoring, axial-tension, point-load, "
+              "vessel-strain, wire-bending; add type = \"<energy>\"",
+              "scene.toml:8:1: constraint 'node-wise-contact' has no 'on'; expected two curves: [wire, vessel]; add on "
+              "= [\"<wire>\", \"<vessel>\"]"});
+}
+
+TEST_CASE("what belongs to a later version is said to") {
+  Workbench bench;
+  const std::string text =
+      scene_with("radius = \"0.4 mm\"\n",
+                 "radius = \"0.4 mm\"\nlength = \"sliding\"\nspan = [0, 1]\nspacing = [1]\n"
+                 "geometry = { type = \"csv\" }\nends = [{ type = \"free\", move = [1, 0] }, \"pinned\"]\n") +
+      "[start]\n[[step]]\n[[loss]]\n";
+  const std::string known = "expected one of: name, vessel, ends, kinematics, nodes, radius; remove it";
+  const std::string tables = "expected one of: schema, title, base, plugin-path, set, scene, vessel, wire, energy, "
+                             "constraint, enforcement, solver, certificate; remove it";
+  CHECK(bench.errors(text) ==
+        Texts{"scene.toml:12:1: key 'length' in wire 'w' is not available in this version; " + known,
+              "scene.toml:13:1: key 'span' in wire 'w' is not available in this version; " + known,
+              "scene.toml:14:1: key 'spacing' in wire 'w' is not available in this version; " + known,
+              "scene.toml:15:1: key 'geometry' in wire 'w' is not available in this version; " + known,
+              "scene.toml:16:26: key 'move' in the first end of wire 'w' is not available in this version; expected "
+              "one of: type, tangent; remove it",
+              "scene.toml:33:2: key 'start' in the composition is not available in this version; " + tables,
+              "scene.toml:34:3: key 'step' in the composition is not available in this version; " + tables,
+              "scene.toml:35:3: key 'loss' in the composition is not available in this version; " + tables});
+}
+
+TEST_CASE("a second-order verdict cannot be demanded yet") {
+  Workbench bench;
+  CHECK(bench.errors(test::small_scene, {{"certificate.require", "minimum"}}) ==
+        Texts{"--set certificate.require=minimum: 'require' of [certificate] is \"minimum\", but no second-order "
+              "verdict exists yet in this version; expected 'none'; remove it: the result says whether it is an "
+              "equilibrium, not whether it is a minimum"});
+  CHECK(bench.errors(test::small_scene, {{"certificate.multiplier", "1 N"}}) ==
+        Texts{"--set certificate.multiplier=1 N: 'multiplier' of [certificate] is text \"1 N\", out of bounds; "
+              "expected at most 0 N; write a smaller number"});
+}
+
+TEST_CASE("tables and lists of tables in each other's place") {
+  Workbench bench;
+  CHECK(bench.errors("schema = 1\n[scene]\ndimension = 3\n[vessel]\nname = \"v\"\n[[solver]]\n") ==
+        Texts{"scene.toml:4:1: 'vessel' is a table; expected a list of tables; write [[vessel]]",
+              "scene.toml:6:1: 'solver' is a list; expected a table; write [solver] with type = \"ipopt\""});
+  CHECK(bench.errors("schema = 2\ntitle = 1\nscene = { dimension = 4, dimensions = 2 }\nvessel = [1]\n") ==
+        Texts{"scene.toml:1:10: 'schema' is whole number 2; expected 1; write schema = 1; this version reads no other",
+              "scene.toml:2:9: 'title' is whole number 1; expected text; write it in quotes",
+              "scene.toml:3:23: 'dimension' of [scene] is whole number 4; expected 2 or 3; write dimension = 2 or "
+              "dimension = 3",
+              "scene.toml:3:26: unknown key 'dimensions' in [scene]; expected one of: dimension; did you mean "
+              "'dimension'?",
+              "scene.toml:4:11: a vessel without a name is whole number 1; expected a table; write it under "
+              "[[vessel]]"});
+}
+
+TEST_CASE("references to curves") {
+  Workbench bench;
+  CHECK(bench.errors(scene_with("vessel = \"v\"", "vessel = \"w\"")) ==
+        Texts{"scene.toml:10:10: unknown vessel 'w' in 'vessel' of wire 'w'; expected one of: v; 'w' is a wire"});
+  CHECK(bench.errors(scene_with("on = \"v\"", "on = [\"v\"]")) ==
+        Texts{"scene.toml:22:6: 'on' of energy 'anchoring' is a list; expected the name of a curve; write it in "
+              "quotes"});
+  CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[\"v\", \"w\"]")) ==
+        Texts{"scene.toml:27:6: 'on' of constraint 'lumen' has the vessel first; expected [wire, vessel]; write on = "
+              "[\"w\", \"v\"]"});
+  CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[\"v\", \"v\"]")) ==
+        Texts{"scene.toml:27:7: unknown wire 'v' in 'on' of constraint 'lumen'; expected one of: w; 'v' is a vessel"});
+  CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[\"w\"]")) ==
+        Texts{"scene.toml:27:6: 'on' of constraint 'lumen' has 1 entries; expected two curves: [wire, vessel]; write "
+              "on = [\"<wire>\", \"<vessel>\"]"});
+}
+
+TEST_CASE("names that paths could not address") {
+  Workbench bench;
+  CHECK(bench.errors(scene_with("name = \"lumen\"", "name = \"lu.men\"")) ==
+        Texts{"scene.toml:25:8: 'name' of constraint 'lu.men' is text \"lu.men\"; expected text without '.' and '=', "
+              "which paths are split at; choose another name"});
+}
+
+TEST_CASE("a name of another kind") {
+  Workbench bench;
+  CHECK(bench.errors(scene_with("type = \"node-wise-contact\"", "type = \"anchoring\"")) ==
+        Texts{"scene.toml:26:8: unknown constraint 'anchoring'; expected one of: node-wise-contact, "
+              "segment-wise-contact; 'anchoring' is an energy, not a constraint"});
+  CHECK(bench.errors(scene_with("type = \"node-wise-contact\"", "type = \"envelope\"")) ==
+        Texts{"scene.toml:26:8: unknown constraint 'envelope'; expected one of: node-wise-contact, "
+              "segment-wise-contact; `bowstring plugins constraint` says what is installed"});
+}
+
+TEST_CASE("kinds of values") {
+  Workbench bench;
+  const auto error = [&](const std::string& path, const std::string& value) {
+    const Texts all = bench.errors(test::small_scene, {{path, value}});
+    REQUIRE(all.size() == 1);
+    return all[0].substr(("--set " + path + "=" + value + ": ").size());
+  };
+  CHECK(error("wire.w.radius", "\"0.4\"") ==
+        "'radius' of wire 'w' is text \"0.4\" without a unit; expected a quantity in mm, more than 0; write \"0.4 "
+        "mm\"");
+  CHECK(error("wire.w.radius", "3 furlongz") ==
+        "unknown unit 'furlongz' of 'radius' of wire 'w'; expected a quantity in mm, more than 0; write \"3 mm\"");
+  CHECK(error("wire.w.radius", "inf") ==
+        "'radius' of wire 'w' is number inf, which is not finite; expected a finite number; write \"<number> mm\"");
+  CHECK(error("wire.w.radius", "nan mm") ==
+        "'radius' of wire 'w' is text \"nan mm\", which is not finite; expected a finite number; write \"<number> "
+        "mm\"");
+  CHECK(error("wire.w.nodes", "80.0") ==
+        "'nodes' of wire 'w' is number 80; expected a whole number, at least 3 and at most 1e+06; write nodes = <whole "
+        "number>");
+  CHECK(error("vessel.v.rigid", "yes") == "'rigid' of vessel 'v' is text \"yes\"; expected true or false; write rigid "
+                                          "= true");
+  CHECK(error("solver.tolerance", "1e-8 N") ==
+        "wrong unit: 'tolerance' of solver 'ipopt' is text \"1e-8 N\"; expected a number, more than 0; write 1e-08");
+  CHECK(error("solver.tolerance", "\"1e-8\"") ==
+        "'tolerance' of solver 'ipopt' is text \"1e-8\"; expected a number, more than 0; write 1e-08");
+  CHECK(error("vessel.v.geometry.periods", "90 deg") ==
+        "wrong unit: 'periods' of geometry 'sinusoid' of vessel 'v' is text \"90 deg\"; expected a number; write 90");
+  CHECK(error("vessel.v.geometry.origin", "1") ==
+        "'origin' of geometry 'sinusoid' of vessel 'v' is whole number 1; expected a list, each entry a quantity in "
+        "mm; write origin = [\"<number> mm\", …]");
+  CHECK(error("constraint.lumen.centerline", "splin") ==
+        "'centerline' of constraint 'lumen' is text \"splin\"; expected 'spline' or 'polyline'; did you mean "
+        "'spline'?");
+  CHECK(error("constraint.lumen.window", "1 N") ==
+        "wrong unit: 'window' of constraint 'lumen' is text \"1 N\"; expected a number or a quantity in mm, more than "
+        "0; write 1 or \"1 mm\"");
+  CHECK(error("wire.w.kinematics", "3") ==
+        "'kinematics' of wire 'w' is whole number 3; expected the name of a kinematics, or a table with its 'type'; "
+        "write kinematics = \"edge-frames\"");
+  CHECK(error("wire.w.ends", "[\"pinned\"]") ==
+        "'ends' of wire 'w' has 1 entries; expected two: the first end and the last end; write ends = [\"pinned\", "
+        "\"pinned\"]");
+  CHECK(error("wire.w.ends.last", "pined") ==
+        "the last end of wire 'w' is text \"pined\"; expected 'free', 'pinned', 'clamped' or 'held-edge'; did you mean "
+        "'pinned'?");
+  CHECK(error("wire.w.ends.last.tangent", "[1, 0, 0]") ==
+        "'tangent' of the last end of wire 'w' has 3 entries; expected a list of as many numbers as the scene has "
+        "dimensions; write the direction that is held, along the curve");
+  CHECK(error("wire.w.ends.last.tangent", "[0, 0]") ==
+        "'tangent' of the last end of wire 'w' has no length; expected a direction; write the direction that is held, "
+        "along the curve");
+}
+
+TEST_CASE("profiles") {
+  Workbench bench;
+  const auto error = [&](const std::string& path, const std::string& value) {
+    const Texts all = bench.errors(test::small_scene, {{path, value}});
+    REQUIRE(all.size() == 1);
+    return all[0].substr(("--set " + path + "=" + value + ": ").size());
+  };
+  CHECK(error("wire.w.radius", "{ colum = \"r\" }") ==
+        "unknown key 'colum' in 'radius' of wire 'w'; expected one of: table, segments, column, measured-from; did you "
+        "mean 'column'?");
+  CHECK(error("wire.w.radius", "{}") ==
+        "'radius' of wire 'w' has none of 'table', 'segments' and 'column'; expected exactly one of them; write a "
+        "value, or a table with one of these keys");
+  CHECK(error("wire.w.radius", "{ table = [[0, 1], [0, 2]] }") ==
+        "arc length 0 mm of 'radius' of wire 'w' follows 0 mm; expected arc lengths that increase; sort the rows, one "
+        "per arc length");
+  CHECK(error("wire.w.radius", "{ table = [[0, 1, 2]] }") ==
+        "a row of 'table' of 'radius' of wire 'w' is a list of 3; expected a pair [arc length, value]; write [\"0 "
+        "mm\", <value>]");
+  CHECK(error("wire.w.radius", "{ table = [[0, 0]] }") ==
+        "a value of 'radius' of wire 'w' is whole number 0, out of bounds; expected more than 0 mm; write a larger "
+        "number");
+  CHECK(error("wire.w.radius", "{ segments = { a = 1 }, measured-from = \"tip\" }") ==
+        "'measured-from' of 'radius' of wire 'w' without a 'table'; expected it beside arc lengths only; remove it");
+  CHECK(error("wire.w.radius", "{ table = [[0, 1]], measured-from = \"top\" }") ==
+        "'measured-from' of 'radius' of wire 'w' is text \"top\"; expected 'tip' or 'sheath'; write one of them");
+  CHECK(error("wire.w.radius", "{ segments = {}, column = \"a\" }") ==
+        "'radius' of wire 'w' has more than one of 'table', 'segments' and 'column'; expected exactly one of them; "
+        "write a value, or a table with one of these keys");
+  CHECK(error("vessel.v.radius", "{ table = [[0, 1]], measured-from = \"tip\" }") ==
+        "'measured-from' in 'radius' of vessel 'v'; expected it on a wire only; remove it: a vessel's arc length "
+        "counts from its first end");
+  CHECK(error("energy.anchoring.stiffness", "{ table = [[0, \"1 N/mm^2\"]], measured-from = \"tip\" }") ==
+        "'measured-from' in 'stiffness' of energy 'anchoring', which acts on a vessel; expected it on a wire only; "
+        "remove it: a vessel's arc length counts from its first end");
+  CHECK(error("energy.anchoring.stiffness", "{ segments = { a = \"1 N/mm\", b = \"1 N/mm^2\" } }") ==
+        "segment 'b' of 'stiffness' of energy 'anchoring' is in N/mm^2, an earlier one in N/mm; expected one kind of "
+        "unit in a profile; write all values in N/mm");
+}

@@ -1,0 +1,209 @@
+#include "writers/reading/result.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "plugins/sdk/guard.hpp"
+
+namespace bowstring {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* mend = "; give the document that `bowstring solve --json` prints";
+
+[[noreturn]] void refuse(const std::string& where, const std::string& found, const std::string& expected) {
+  throw StatusError(Code::invalid_input, where + ": found " + found + ", expected " + expected + mend);
+}
+
+std::string found(const Json& value) {
+  return value.is_string() ? "\"" + value.get<std::string>() + "\"" : value.type_name();
+}
+
+Json parse(const char* text) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    const char* stop = text + std::min(error.byte > 0 ? error.byte - 1 : 0, std::strlen(text));
+    const auto line = 1 + std::count(text, stop, '\n');
+    const char* start = stop;
+    while (start != text && start[-1] != '\n') --start;
+    refuse("line " + std::to_string(line) + ", column " + std::to_string(stop - start + 1),
+           "text that is not JSON", "a \"bowstring.result/1\" document");
+  }
+}
+
+/// A member, or null where the table has none.
+const Json& member(const Json& table, const char* key) {
+  static const Json null;
+  if (!table.is_object()) return null;
+  const auto entry = table.find(key);
+  return entry == table.end() ? null : *entry;
+}
+
+std::string text(const Json& table, const char* key) {
+  const Json& value = member(table, key);
+  return value.is_string() ? value.get<std::string>() : std::string();
+}
+
+double number(const Json& value, const std::string& where) {
+  if (value.is_null()) return not_a_number;
+  if (!value.is_number()) refuse(where, found(value), "a number or null");
+  return value.get<double>();
+}
+
+double number(const Json& table, const char* key, const std::string& where) {
+  return number(member(table, key), where + "." + key);
+}
+
+/// The entries of a list that may be left out.
+const Json& list(const Json& table, const char* key, const std::string& where) {
+  static const Json none = Json::array();
+  const Json& value = member(table, key);
+  if (value.is_null()) return none;
+  if (!value.is_array()) refuse(where + key, found(value), "a list");
+  return value;
+}
+
+Vector3 point(const Json& row, int dimension, const std::string& where) {
+  const auto expected = static_cast<std::size_t>(dimension);
+  if (!row.is_array() || row.size() != expected) {
+    refuse(where, row.is_array() ? std::to_string(row.size()) + " numbers" : found(row),
+           std::to_string(dimension) + " numbers");
+  }
+  Vector3 out;
+  for (int k = 0; k < dimension; ++k) out[k] = number(row[static_cast<std::size_t>(k)], where);
+  return out;
+}
+
+std::vector<Vector3> points(const Json& table, const char* key, int dimension, const std::string& where) {
+  const Json& rows = list(table, key, where + ".");
+  std::vector<Vector3> out;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    out.push_back(point(rows[i], dimension, where + "." + key + "[" + std::to_string(i) + "]"));
+  }
+  return out;
+}
+
+void expect_nodes(std::size_t entries, std::size_t nodes, const std::string& where) {
+  if (entries == nodes) return;
+  refuse(where, std::to_string(entries) + " entries", std::to_string(nodes) + ", one per node");
+}
+
+std::vector<double> node_numbers(const Json& table, const char* key, std::size_t nodes, const std::string& where) {
+  const Json& values = list(table, key, where + ".");
+  if (values.empty()) return std::vector<double>(nodes, not_a_number);
+  expect_nodes(values.size(), nodes, where + "." + key);
+  std::vector<double> out;
+  for (const Json& value : values) out.push_back(number(value, where + "." + key));
+  return out;
+}
+
+ResultCurve read_curve(const Json& table, int dimension, const std::string& where) {
+  ResultCurve curve;
+  curve.name = text(table, "name");
+  const std::string kind = text(table, "kind");
+  if (kind != "wire" && kind != "vessel") refuse(where + ".kind", found(member(table, "kind")), "\"wire\" or \"vessel\"");
+  curve.wire = kind == "wire";
+  curve.points = points(table, "points", dimension, where);
+  curve.reference = points(table, "reference_points", dimension, where);
+  const std::size_t nodes = curve.points.size();
+  if (nodes == 0) refuse(where + ".points", "no point", "one per node");
+  expect_nodes(curve.reference.size(), nodes, where + ".reference_points");
+  curve.arc = node_numbers(table, "s_mm", nodes, where);
+  curve.radius = node_numbers(table, "radius_mm", nodes, where);
+  curve.curvature = node_numbers(table, "curvature_per_mm", nodes, where);
+  return curve;
+}
+
+int read_dimension(const Json& curves) {
+  const Json& rows = member(curves.front(), "points");
+  if (!rows.is_array() || rows.empty()) refuse("curves[0].points", found(rows), "a list of points");
+  const std::size_t size = rows.front().size();
+  if (size != 2 && size != 3) {
+    refuse("curves[0].points[0]", std::to_string(size) + " numbers", "2 in the plane, 3 in space");
+  }
+  return static_cast<int>(size);
+}
+
+int curve_index(const Result& result, const Json& table, const char* key, const std::string& where) {
+  const std::string name = text(table, key);
+  for (std::size_t i = 0; i < result.curves.size(); ++i) {
+    if (result.curves[i].name == name) return static_cast<int>(i);
+  }
+  refuse(where + "." + key, found(member(table, key)), "the name of a curve of this document");
+}
+
+void read_curves(const Json& document, Result& out) {
+  const Json& curves = list(document, "curves", "");
+  if (curves.empty()) refuse("curves", "none", "at least one curve");
+  out.dimension = read_dimension(curves);
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    out.curves.push_back(read_curve(curves[i], out.dimension, "curves[" + std::to_string(i) + "]"));
+  }
+}
+
+void read_loads(const Json& document, Result& out) {
+  const Json& contacts = list(document, "contacts", "");
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const std::string where = "contacts[" + std::to_string(i) + "]";
+    out.contacts.push_back({curve_index(out, contacts[i], "wire", where), number(contacts[i], "s_mm", where),
+                            number(contacts[i], "force_N", where)});
+  }
+  const Json& supports = list(document, "supports", "");
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    const std::string where = "supports[" + std::to_string(i) + "]";
+    out.supports.push_back({curve_index(out, supports[i], "on", where), text(supports[i], "end") == "last"});
+  }
+}
+
+/// Geometries read from a file are in the patient's axes, and no others: the rest generate their shapes.
+bool read_patient_axes(const Json& composition) {
+  for (const Json& vessel : list(composition, "vessel", "composition.")) {
+    if (text(member(vessel, "geometry"), "type") == "csv") return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+Result read_result(const char* json) {
+  const Json document = parse(json);
+  if (text(document, "format") != "bowstring.result/1") {
+    refuse("format", found(member(document, "format")), "\"bowstring.result/1\"");
+  }
+  Result out;
+  const Json& composition = member(document, "composition");
+  out.title = text(composition, "title");
+  out.status = text(document, "status");
+  out.reason = text(document, "reason");
+  const Json& quantities = member(document, "quantities");
+  out.peak_displacement = number(quantities, "peak_displacement_mm", "quantities");
+  out.contact_count = number(quantities, "contact_count", "quantities");
+  out.contact_force = number(quantities, "contact_force_N", "quantities");
+  out.total_energy = number(member(document, "energy"), "total", "energy");
+  read_curves(document, out);
+  out.patient_axes = out.dimension == 3 && read_patient_axes(composition);
+  read_loads(document, out);
+  return out;
+}
+
+int nearest_node(const ResultCurve& curve, double arc) {
+  int nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < curve.nodes(); ++i) {
+    const double distance = std::abs(curve.arc[static_cast<std::size_t>(i)] - arc);
+    if (!(distance < least)) continue;
+    least = distance;
+    nearest = i;
+  }
+  return nearest;
+}
+
+}  // namespace bowstring
