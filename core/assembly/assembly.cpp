@@ -15,6 +15,8 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+constexpr double largest_shortening = 0.5;                // of an edge, in one step
+constexpr double largest_turn = 0.78539816339744830962;   // of a station, in one step
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Local arc-length spacing of a curve's edges around a fraction of its length.
@@ -385,7 +387,28 @@ Status Assembly::check_guard() {
       return guard_status_;
     }
   }
+  if (std::any_of(tables_.begin(), tables_.end(), [&](const SiteTable& table) { return folds(table); })) {
+    guard_status_.code = Code::refused;
+  }
   return guard_status_;
+}
+
+bool Assembly::folds(const SiteTable& table) const noexcept {
+  const Site site = table.declaration->site;
+  if ((site != Site::edge && site != Site::station) || table.accepted.empty()) return false;
+  const int components = table.values() - (table.declaration->lengths_vary ? 2 : 0);
+  for (int i = 0; i < table.count(); ++i) {
+    const double* now = table.y.data() + i * table.values();
+    const double* before = table.accepted.data() + i * table.values();
+    if (site == Site::edge) {
+      if (now[0] < largest_shortening * before[0]) return true;
+      continue;
+    }
+    double change = 0.0;
+    for (int k = 0; k < components; ++k) change += (now[k] - before[k]) * (now[k] - before[k]);
+    if (change > largest_turn * largest_turn) return true;
+  }
+  return false;
 }
 
 Status Assembly::update_rows(bool jacobian) {
@@ -618,6 +641,9 @@ Status Assembly::accept(Span<const double> q) noexcept {
   for (ConstraintUse& use : scene_.constraints) {
     Status status = use.constraint->accept(*this);
     if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
+  }
+  for (SiteTable& table : tables_) {
+    if (table.declaration->site == Site::station || table.declaration->site == Site::edge) table.accepted = table.y;
   }
   // Searches now start elsewhere: what was computed at this state may differ in its last bits.
   has_rows_ = has_row_jacobians_ = guard_checked_ = false;

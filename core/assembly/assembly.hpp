@@ -120,6 +120,7 @@ class Assembly final : public Problem, public PlaceTables {
   Status update_energy();
   Status update_jacobians();
   Status check_guard();
+  bool folds(const SiteTable& table) const noexcept;
   Status update_rows(bool jacobian);
   void scatter_jacobian(const ConstraintSlot& slot, Span<double> out) const noexcept;
   Status add_constraint_hessian(ConstraintSlot& slot, Span<const double> multipliers, Span<double> values);

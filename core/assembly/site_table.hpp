@@ -13,6 +13,7 @@ struct SiteTable {
   const Kinematics* kinematics = nullptr;
   const SiteDeclaration* declaration = nullptr;
   std::vector<double> y;              ///< count × values
+  std::vector<double> accepted;       ///< y at the last accepted point, of stations and edges
   std::vector<double> jacobian;       ///< count × values × width; empty where B = I
   std::vector<double> stress;         ///< count × values: of the energies alone
   std::vector<double> total_stress;   ///< count × values: of the Lagrangian

@@ -89,7 +89,8 @@ class Problem {
   virtual void retract(Span<const double> q, Span<const double> delta, Span<double> out) const noexcept = 0;
 
   /// Moves the reference of the step guard and of the closest-point searches to q. Until the next call, `evaluate`
-  /// answers `refused` where a wire node has moved, relative to its wall, by more than `guard` of its clearance.
+  /// answers `refused` where a wire node has moved, relative to its wall, by more than `guard` of its clearance, where
+  /// an edge has shortened to less than half, or where a station has turned by more than 45°.
   virtual Status accept(Span<const double> q) noexcept = 0;
   virtual void set_guard(double fraction_of_clearance) noexcept = 0;  ///< infinity: no guard
   virtual bool epoch_due() const noexcept = 0;

@@ -105,7 +105,8 @@ Json solve(const std::string& file, const toml::table& run, const std::string& d
     }
   }
   bowstring::PluginHostOptions options;
-  options.executable_path = std::string(std::getenv("BOWSTRING_BUILD_ROOT")) + "/bowstring";
+  const char* build = std::getenv("BOWSTRING_BUILD_ROOT");
+  options.executable_path = (build == nullptr ? std::string("build") : std::string(build)) + "/bowstring";
   bowstring::PluginHost host(options);
   bowstring::Refusal refusal;
   const auto session = bowstring::prepare(request, host, refusal);

@@ -91,8 +91,9 @@ void check_site(const Declared& curve, Site which, const std::vector<double>& q,
   }
   const std::vector<double> by_differences = symmetric_part(differences(
       curve, q, [&](const std::vector<double>& p) { return weighted_rows(stress, curve.jacobian(which, p), n); }));
-  REQUIRE(largest(by_differences) > 1e-3);
-  CHECK(largest_difference(curvature, by_differences) <= tolerance.curvature * largest(by_differences));
+  // Near a straight line the curvature of a direction's turn is of the order of the turn itself.
+  REQUIRE(largest(by_differences) > 1e-10);
+  CHECK(largest_difference(curvature, by_differences) <= tolerance.curvature * std::max(largest(by_differences), 1e-2));
 }
 
 /// An isotropic energy of the strain that also reads ds and s where they vary: what laws see of a station whose basis
