@@ -127,12 +127,12 @@ void judge_crossings(const Assembly& assembly, Certificate& out) {
     found.dense = contact::max_penetration_dense(wall, polyline, start);
     found.crossing = contact::check_crossing(wall, polyline, start);
     if (found.crossing.crossed()) {
-      const contact::Penetration& deepest = found.crossing.deepest;
-      const auto segment = at(std::clamp(static_cast<int>(deepest.vessel_coordinate), 0, vessel.view.nodes - 1));
+      const contact::Penetration& exit = found.crossing.exit;
+      const auto segment = at(std::clamp(static_cast<int>(exit.vessel_coordinate), 0, vessel.view.nodes - 1));
       out.crossings.push_back("wire '" + wire.name + "' passes through the wall of '" + vessel.name +
-                              "' between its rows by " + number(deepest.depth) + " mm (a sound mesh allows " +
-                              number(found.crossing.allowance) + " mm) at wire s = " + number(deepest.wire_arc) +
-                              " mm, vessel s = " + number(vessel.arc[segment]) + " mm");
+                              "' between its rows, from wire s = " + number(exit.wire_arc) + " mm, vessel s = " +
+                              number(vessel.arc[segment]) + " mm: " + number(exit.depth) +
+                              " mm there, where a sound mesh allows " + number(found.crossing.allowance) + " mm");
     }
     out.pairs.push_back(found);
   }

@@ -73,14 +73,14 @@ class Follower {
   double distance_ = 0.0;  // from the centerline, beyond an end from its straight continuation
 };
 
-}  // namespace
-
-Penetration deepest_penetration(const Centerline& vessel, const WirePolyline& wire, int samples_per_segment,
-                                std::optional<double> start) noexcept {
+/// Calls `visit` with every sample along the wire.
+template <class Visit>
+void follow(const Centerline& vessel, const WirePolyline& wire, int samples_per_segment, std::optional<double> start,
+            Visit&& visit) noexcept {
   const int dim = vessel.dimension;
   Follower follower(vessel);
   follower.begin(wire.points, radius_at(wire, 0, 0.0), start);
-  Penetration deepest{follower.depth(), 0.0, 0, 0.0, follower.sigma(), follower.distance()};
+  visit(Penetration{follower.depth(), 0.0, 0, 0.0, follower.sigma(), follower.distance()});
   double arc = 0.0;
   for (int segment = 0; segment + 1 < wire.nodes; ++segment) {
     const double length = chord_length(wire, segment, dim);
@@ -90,11 +90,27 @@ Penetration deepest_penetration(const Centerline& vessel, const WirePolyline& wi
       double x[3] = {};
       for (int i = 0; i < dim; ++i) x[i] = (1.0 - t) * p[i] + t * p[dim + i];
       follower.move(x, radius_at(wire, segment, t), length / samples_per_segment);
-      if (std::isnan(deepest.depth) || follower.depth() <= deepest.depth) continue;
-      deepest = {follower.depth(), arc + t * length, segment, t, follower.sigma(), follower.distance()};
+      visit(Penetration{follower.depth(), arc + t * length, segment, t, follower.sigma(), follower.distance()});
     }
     arc += length;
   }
+}
+
+/// Keeps the deepest sample; one that is not a number is kept for good.
+void keep_deeper(Penetration& deepest, const Penetration& sample, bool first) noexcept {
+  if (first || (!std::isnan(deepest.depth) && !(sample.depth <= deepest.depth))) deepest = sample;
+}
+
+}  // namespace
+
+Penetration deepest_penetration(const Centerline& vessel, const WirePolyline& wire, int samples_per_segment,
+                                std::optional<double> start) noexcept {
+  Penetration deepest;
+  bool first = true;
+  follow(vessel, wire, samples_per_segment, start, [&](const Penetration& sample) {
+    keep_deeper(deepest, sample, first);
+    first = false;
+  });
   return deepest;
 }
 
@@ -117,7 +133,16 @@ double crossing_allowance(const Centerline& vessel, const WirePolyline& wire) no
 
 CrossingCheck check_crossing(const Centerline& vessel, const WirePolyline& wire,
                              std::optional<double> start) noexcept {
-  return {deepest_penetration(vessel, wire, check_samples, start), crossing_allowance(vessel, wire)};
+  CrossingCheck check;
+  check.allowance = crossing_allowance(vessel, wire);
+  bool first = true;
+  follow(vessel, wire, check_samples, start, [&](const Penetration& sample) {
+    const bool within = sample.depth <= check.allowance;
+    if (!within && !check.crossed()) check.exit = sample;
+    keep_deeper(check.deepest, sample, first);
+    first = false;
+  });
+  return check;
 }
 
 }  // namespace bowstring::contact

@@ -50,7 +50,8 @@ double crossing_allowance(const Centerline& vessel, const WirePolyline& wire) no
 
 /// Whether the wall passes between two nodes of a wire.
 struct CrossingCheck {
-  Penetration deepest;
+  Penetration deepest;     ///< beyond `exit` it may be measured from another limb of the vessel
+  Penetration exit;        ///< where the allowance is first exceeded; meaningful where `crossed()`
   double allowance = 0.0;  ///< mm
 
   bool crossed() const noexcept { return !(deepest.depth <= allowance); }
