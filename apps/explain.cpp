@@ -85,8 +85,7 @@ int explain(const CommonOptions& common, const std::string& file, const std::vec
                 counted(static_cast<int>(use.laws.size()), "law").c_str());
   }
   const ProblemSummary& summary = session->assembly->summary();
-  std::printf("rows: %s, %s\n", counted(summary.equalities, "equality").c_str(),
-              counted(summary.inequalities, "inequality").c_str());
+  std::printf("rows: %d equalities, %d inequalities\n", summary.equalities, summary.inequalities);
   for (const RowGroup& group : summary.row_groups) std::printf("  %s\n", group.text.c_str());
   std::printf("unknowns: %d, eliminated because they are held: %d\n", summary.unknowns, summary.fixed);
   std::printf("Hessian: %d entries in its lower triangle; Jacobian: %d\n",

@@ -15,11 +15,17 @@ struct Needs {
   std::string reason;            ///< for `explain` and refusals: "vessel-strain: torsional-stiffness > 0"
 };
 
+/// A parameter that this scene cannot feel. It is allowed, and `explain` says so where the user has given it.
+struct IdleParameter {
+  std::string key, reason;  ///< "torsional-stiffness", "a curve in the plane does not twist"
+};
+
 struct EnergyDeclaration {
   std::vector<const Law*> laws;                ///< owned by the energy, alive as long as it
   std::vector<LawDescription> descriptions;    ///< one per law
   Needs needs;
   std::vector<std::string> warnings;           ///< what the user should know of this formulation in this scene
+  std::vector<IdleParameter> without_effect;
 };
 
 /// kind `energy`: one J term on one curve, as laws at places.

@@ -100,6 +100,7 @@ class Builder {
   void start_wire(Curve& wire, const Curve& vessel, int nodes) const;
   void check_clearance(const Curve& wire, const Curve& vessel, const std::string& position);
   void declare_energies();
+  void note_without_effect(const EnergyUse& use);
   void declare_kinematics();
   bool check_declaration(const Curve& curve, const ComponentChoice& choice);
   void sample_laws();
@@ -114,6 +115,15 @@ class Builder {
   const ComponentChoice& kinematics_choice(std::size_t curve) const {
     return curve < composition_.vessels.size() ? composition_.vessels[curve].kinematics
                                                : composition_.wires[curve - composition_.vessels.size()].kinematics;
+  }
+
+  /// Whether some constraint names all of these curves: only then do their radii matter.
+  bool is_constrained(const std::vector<std::string>& names) const {
+    return std::any_of(composition_.constraints.begin(), composition_.constraints.end(), [&](const ConstraintTable& c) {
+      return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+        return std::find(c.on.begin(), c.on.end(), name) != c.on.end();
+      });
+    });
   }
 
   const Composition& composition_;
@@ -318,7 +328,7 @@ void Builder::add_vessel(const VesselTable& table) {
                             number(curve->arc[static_cast<std::size_t>(smallest - curve->radius.begin())]) + " mm of '" +
                             curve->name + "'",
               "a positive one everywhere", "");
-      } else {
+      } else if (is_constrained({table.name})) {
         check_tube(*curve, position);
       }
     }
@@ -384,7 +394,9 @@ void Builder::add_wire(const WireTable& table) {
     error(table.radius.position, status.text, "", "");
   } else {
     curve->radius = std::move(radius);
-    check_clearance(*curve, *vessel, table.radius.position.empty() ? table.position : table.radius.position);
+    if (is_constrained({table.name, table.vessel})) {
+      check_clearance(*curve, *vessel, table.radius.position.empty() ? table.position : table.radius.position);
+    }
   }
   scene_->curves.push_back(std::move(curve));
 }
@@ -410,10 +422,20 @@ void Builder::declare_energies() {
       curve->needs.reason += (curve->needs.reason.empty() ? "" : "; ") + needs.reason;
     }
     for (const std::string& warning : use.declaration.warnings) scene_->warnings.push_back(warning);
+    note_without_effect(use);
     for (std::size_t k = 0; k < use.declaration.laws.size(); ++k) {
       use.laws.push_back({use.declaration.laws[k], use.declaration.descriptions[k], {}});
     }
     scene_->energies.push_back(std::move(use));
+  }
+}
+
+void Builder::note_without_effect(const EnergyUse& use) {
+  for (const IdleParameter& idle : use.declaration.without_effect) {
+    const ParameterValue* value = use.parameters.find(idle.key.c_str());
+    if (value == nullptr || value->position.empty()) continue;  // nobody has given it
+    scene_->without_effect.push_back(value->position + ": '" + idle.key + "' of energy '" + use.label +
+                                     "' has no effect: " + idle.reason);
   }
 }
 

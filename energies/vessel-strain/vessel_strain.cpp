@@ -133,6 +133,7 @@ class VesselStrain final : public Energy {
       strain.site = Site::station;
       strain.parameters = {"bending-stiffness", "torsional-stiffness"};
       const bool space = curve.dimension == 3;
+      if (!space) out.without_effect.push_back({"torsional-stiffness", "a curve in the plane does not twist"});
       if (space && torsion_) {
         strain.isotropic = false;
         out.needs.material_frames = true;
