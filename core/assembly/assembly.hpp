@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/assembly/constraint_rows.hpp"
 #include "core/assembly/law_batch.hpp"
 #include "core/assembly/pattern.hpp"
 #include "core/interfaces/problem.hpp"
@@ -89,20 +90,6 @@ class Assembly final : public Problem, public PlaceTables {
     int table = 0;
     LawAssembly law;
   };
-  struct RowRead {        // one place of a constraint row
-    int table = 0, index = 0, values = 0, width = 0;
-    bool identity = true;
-  };
-  struct ConstraintSlot {
-    int first_row = 0;
-    std::vector<RowRead> reads;                // of all places, in declaration order
-    std::vector<double> jacobian, hessian;     // as the constraint writes them
-    std::vector<int> jacobian_begin, hessian_begin;    // per row + 1
-    std::vector<int> unknown_begin, unknown;   // per row: free unknowns that it reads, stencil after stencil
-    std::vector<int> jacobian_position, hessian_position;
-    std::vector<int> hessian_position_begin;
-    bool identity = true;                      // every place of every row has B = I
-  };
 
   SiteTable* find_table(int curve, Site site) noexcept;
   const SiteTable* find_table(int curve, Site site) const noexcept;
@@ -112,9 +99,7 @@ class Assembly final : public Problem, public PlaceTables {
   void make_patterns();
   void make_order();
   void make_scales();
-  ConstraintSlot make_slot(const ConstraintUse& use, int first_row) const;
-  void locate_constraint(ConstraintSlot& slot);
-  Status named(Status status, const std::string& what) const;
+  ConstraintRows make_constraint_rows(const ConstraintUse& use, int first_row) const;
 
   Status update_places(Span<const double> q);
   Status update_energy();
@@ -122,9 +107,12 @@ class Assembly final : public Problem, public PlaceTables {
   Status check_guard();
   bool folds(const SiteTable& table) const noexcept;
   Status update_rows(bool jacobian);
-  void scatter_jacobian(const ConstraintSlot& slot, Span<double> out) const noexcept;
-  Status add_constraint_hessian(ConstraintSlot& slot, Span<const double> multipliers, Span<double> values);
+  Status update_constraint(std::size_t index, bool jacobian);
+  Status update_row_hessians(Span<const double> multipliers);
+  /// Of the Lagrangian: energies, closure and constraints, at every place.
+  void set_total_stress(double energy_factor, Span<const double> multipliers) noexcept;
   const double* curve_q(int curve) const noexcept;
+  const Curve& curve_of(const SiteTable& table) const noexcept;
 
   Scene& scene_;
   std::vector<FieldEntry> entries_;
@@ -134,7 +122,7 @@ class Assembly final : public Problem, public PlaceTables {
   std::vector<SiteTable> tables_;
   std::vector<int> table_of_;              // curve × site
   std::vector<LawSlot> laws_;
-  std::vector<ConstraintSlot> constraints_;
+  std::vector<ConstraintRows> constraints_;
   std::vector<RowOrigin> origins_;
   std::vector<double> row_lower_, row_upper_, lower_, upper_, scale_;
   std::vector<int> closure_position_;      // of closure Jacobians, table after table
@@ -151,7 +139,7 @@ class Assembly final : public Problem, public PlaceTables {
   Status guard_status_, row_status_;
   bool guard_checked_ = false;
   double energy_ = 0.0;
-  std::vector<double> term_energy_, row_, full_gradient_, full_delta_, row_weight_;
+  std::vector<double> term_energy_, row_, full_gradient_;
 };
 
 }  // namespace bowstring

@@ -9,19 +9,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-const char* site_name(Site site) {
-  switch (site) {
-    case Site::node: return "node";
-    case Site::station: return "station";
-    case Site::edge: return "edge";
-    case Site::frame: return "frame";
-    case Site::length: return "length";
-    case Site::field: return "field";
-    case Site::closure: break;
-  }
-  return "closure row";
-}
-
 }  // namespace
 
 LawAssembly::LawAssembly(const LawUse& use, const SiteTable& site, const std::vector<double>& reference)

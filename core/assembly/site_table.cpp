@@ -1,6 +1,8 @@
 #include "core/assembly/site_table.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 namespace bowstring {
 
@@ -32,7 +34,32 @@ void congruence(const double* modulus, const double* b, int values, int width, d
   }
 }
 
+/// What a kinematics wrote, place after place.
+Status screened(Status status, const std::vector<double>& numbers, const SiteDeclaration& site, const char* what) {
+  if (!status.ok()) return status;
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (std::isfinite(numbers[k])) continue;
+    const std::size_t place = k / (numbers.size() / at(site.count));
+    return Status::failure(Code::failed, std::string("its kinematics gives ") + what + " that is not a finite number at " +
+                                             site_name(site.site) + " " + std::to_string(place));
+  }
+  return {};
+}
+
 }  // namespace
+
+const char* site_name(Site site) noexcept {
+  switch (site) {
+    case Site::node: return "node";
+    case Site::station: return "station";
+    case Site::edge: return "edge";
+    case Site::frame: return "frame";
+    case Site::length: return "length";
+    case Site::field: return "field";
+    case Site::closure: break;
+  }
+  return "closure row";
+}
 
 SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration) {
   SiteTable table;
@@ -56,7 +83,7 @@ Status SiteTable::update_values(const double* curve_q, int coordinates) {
   evaluation.site = declaration->site;
   evaluation.q = {curve_q, at(coordinates)};
   evaluation.values = y;
-  return kinematics->evaluate(evaluation);
+  return screened(kinematics->evaluate(evaluation), y, *declaration, "a value");
 }
 
 Status SiteTable::update_jacobian(const double* curve_q, int coordinates) {
@@ -65,7 +92,7 @@ Status SiteTable::update_jacobian(const double* curve_q, int coordinates) {
   evaluation.site = declaration->site;
   evaluation.q = {curve_q, at(coordinates)};
   evaluation.jacobian = jacobian;
-  return kinematics->evaluate(evaluation);
+  return screened(kinematics->evaluate(evaluation), jacobian, *declaration, "a derivative");
 }
 
 Status SiteTable::update_curvature(const double* curve_q, int coordinates) {
@@ -75,7 +102,7 @@ Status SiteTable::update_curvature(const double* curve_q, int coordinates) {
   evaluation.q = {curve_q, at(coordinates)};
   evaluation.stress = total_stress;
   evaluation.curvature = curvature;
-  return kinematics->evaluate(evaluation);
+  return screened(kinematics->evaluate(evaluation), curvature, *declaration, "a second derivative");
 }
 
 void SiteTable::add_gradient(const std::vector<double>& place_stress, double* out) const noexcept {

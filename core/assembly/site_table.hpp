@@ -27,6 +27,7 @@ struct SiteTable {
   int width() const noexcept { return declaration->width; }
   bool bends() const noexcept { return !declaration->identity && !declaration->linear; }
 
+  // A number that is not finite is `failed`, and names the place.
   Status update_values(const double* curve_q, int coordinates);
   Status update_jacobian(const double* curve_q, int coordinates);
   /// Σ total_stress ∂²y/∂δ² at every place.
@@ -37,6 +38,9 @@ struct SiteTable {
   /// hessian += factor · BᵀCB + curvature, through `hessian_position`.
   void add_hessian(double factor, double* hessian) const noexcept;
 };
+
+/// "node", "station", …, for messages.
+const char* site_name(Site site) noexcept;
 
 SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration);
 

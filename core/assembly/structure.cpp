@@ -1,0 +1,271 @@
+// What an assembly is made of before it evaluates anything: numbering, tables, rows, patterns, scales, order.
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "core/assembly/assembly.hpp"
+#include "core/model/manifold.hpp"
+
+namespace bowstring {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Local arc-length spacing of a curve's edges around a fraction of its length.
+double local_edge_length(const CurveView& view, double arc_fraction) {
+  const int edges = view.nodes - 1;
+  const double position = arc_fraction * edges - 0.5;
+  const int edge = std::clamp(static_cast<int>(std::lround(position)), 0, edges - 1);
+  return view.edge_length[edge];
+}
+
+}  // namespace
+
+void Assembly::number_unknowns() {
+  free_.assign(at(scene_.unknowns), -1);
+  blocks_.begin.assign(1, 0);
+  for (const auto& curve : scene_.curves) {
+    int coordinate = curve->coordinate_begin;
+    int unknown = curve->unknown_begin;
+    const double length = std::max(curve->arc.empty() ? 0.0 : curve->arc.back(), 1e-300);
+    for (const FieldDeclaration& field : curve->declaration.fields) {
+      const int numbers = coordinate_count(field.manifold, field.dimension);
+      const int tangents = tangent_count(field.manifold, field.dimension);
+      for (int i = 0; i < field.count; ++i) {
+        FieldEntry entry;
+        entry.manifold = field.manifold;
+        entry.dimension = field.dimension;
+        entry.coordinate = coordinate;
+        entry.unknown = unknown;
+        entry.arc_fraction = field.station.empty() ? 0.0 : field.station[at(i)] / length;
+        const int first_free = free_count_;
+        for (int k = 0; k < tangents; ++k) {
+          const bool fixed = !field.fixed.empty() && field.fixed[at(i * tangents + k)] != 0;
+          if (fixed) continue;
+          free_[at(unknown + k)] = free_count_++;
+          blocks_.block_of_unknown.push_back(blocks_.blocks());
+          const bool bounded = field.manifold == Manifold::real && !field.lower.empty();
+          lower_.push_back(bounded ? field.lower[at(i)] : -infinity);
+          upper_.push_back(field.manifold == Manifold::real && !field.upper.empty() ? field.upper[at(i)] : infinity);
+        }
+        if (free_count_ > first_free) {
+          entry.block = blocks_.blocks();
+          blocks_.begin.push_back(free_count_);
+        }
+        entries_.push_back(entry);
+        coordinate += numbers;
+        unknown += tangents;
+      }
+    }
+  }
+  summary_.unknowns = free_count_;
+  summary_.fixed = scene_.unknowns - free_count_;
+  summary_.bounded_unknowns = std::any_of(lower_.begin(), lower_.end(), [](double x) { return std::isfinite(x); }) ||
+                              std::any_of(upper_.begin(), upper_.end(), [](double x) { return std::isfinite(x); });
+}
+
+void Assembly::make_tables() {
+  table_of_.assign(scene_.curves.size() * site_count, -1);
+  for (const auto& curve : scene_.curves) {
+    for (const SiteDeclaration& site : curve->declaration.sites) {
+      table_of_[at(curve->view.index * site_count + static_cast<int>(site.site))] = static_cast<int>(tables_.size());
+      tables_.push_back(make_site_table(*curve, site));
+    }
+  }
+  const std::vector<double> reference = scene_.reference_coordinates();
+  std::vector<std::vector<double>> reference_y;
+  for (SiteTable& table : tables_) {
+    const Curve& curve = *scene_.curves[at(table.curve)];
+    Status status = table.update_values(reference.data() + curve.coordinate_begin, curve.coordinates);
+    if (!status.ok()) throw std::runtime_error("curve '" + curve.name + "' at State 1: " + status.text);
+    reference_y.push_back(table.y);
+  }
+  for (int e = 0; e < static_cast<int>(scene_.energies.size()); ++e) {
+    EnergyUse& use = scene_.energies[at(e)];
+    for (const LawUse& law : use.laws) {
+      const int index = table_of_[at(use.curve * site_count + static_cast<int>(law.description.site))];
+      if (index < 0) continue;  // the kinematics has no such place: the scene has already said so
+      SiteTable& table = tables_[at(index)];
+      laws_.push_back({e, index, LawAssembly(law, table, reference_y[at(index)])});
+      if (!law.description.linear || table.declaration->lengths_vary) {
+        table.modulus.assign(at(table.count() * packed_size(table.values())), 0.0);
+      }
+    }
+  }
+}
+
+ConstraintRows Assembly::make_constraint_rows(const ConstraintUse& use, int first_row) const {
+  ConstraintRows out;
+  out.first_row = first_row;
+  const RowDeclaration& rows = use.rows;
+  out.read_begin.assign(1, 0);
+  out.jacobian_begin.assign(1, 0);
+  out.hessian_begin.assign(1, 0);
+  out.unknown_begin.assign(1, 0);
+  for (int r = 0; r < rows.rows; ++r) {
+    int numbers = 0;
+    for (int p = rows.place_begin[at(r)]; p < rows.place_begin[at(r) + 1]; ++p) {
+      const Place& place = rows.places[at(p)];
+      const int index = table_of_[at(place.curve * site_count + static_cast<int>(place.site))];
+      if (index < 0 || place.index < 0 || place.index >= tables_[at(index)].count()) {
+        throw std::runtime_error("constraint '" + use.label + "': row " + std::to_string(r) +
+                                 " reads a place that curve '" + scene_.curves[at(place.curve)]->name +
+                                 "' does not have");
+      }
+      const SiteTable& table = tables_[at(index)];
+      out.reads.push_back({index, place.index, table.values(), table.width(), table.declaration->identity});
+      out.identity = out.identity && table.declaration->identity;
+      numbers += table.values();
+      for (int k = 0; k < table.width(); ++k) {
+        const int unknown = table.unknown[at(place.index * table.width() + k)];
+        out.unknown.push_back(unknown < 0 ? -1 : free_[at(unknown)]);
+      }
+    }
+    out.read_begin.push_back(static_cast<int>(out.reads.size()));
+    out.jacobian_begin.push_back(out.jacobian_begin.back() + numbers);
+    out.hessian_begin.push_back(out.hessian_begin.back() + packed_size(numbers));
+    out.unknown_begin.push_back(static_cast<int>(out.unknown.size()));
+  }
+  out.reserve_derivatives();
+  return out;
+}
+
+void Assembly::make_rows() {
+  origins_.clear();
+  row_lower_.clear();
+  row_upper_.clear();
+  summary_.row_groups.clear();
+  for (const SiteTable& table : tables_) {
+    if (table.declaration->site != Site::closure || table.count() == 0) continue;
+    const Curve& curve = *scene_.curves[at(table.curve)];
+    const int count = table.count() * table.values();
+    const std::string name = curve.name + ".closure";
+    const std::string text = curve.declaration.closure_name + " of '" + curve.name + "' (" + std::to_string(count) + ")";
+    origins_.push_back({table.curve, -1, static_cast<int>(row_lower_.size()), count, name});
+    summary_.row_groups.push_back({name, text, static_cast<int>(row_lower_.size()), count, true});
+    row_lower_.resize(row_lower_.size() + at(count), 0.0);
+    row_upper_.resize(row_lower_.size(), 0.0);
+  }
+  summary_.equalities = static_cast<int>(row_lower_.size());
+  summary_.inequalities = 0;
+  constraints_.clear();
+  for (int c = 0; c < static_cast<int>(scene_.constraints.size()); ++c) {
+    const ConstraintUse& use = scene_.constraints[at(c)];
+    const int first = static_cast<int>(row_lower_.size());
+    constraints_.push_back(make_constraint_rows(use, first));
+    origins_.push_back({-1, c, first, use.rows.rows, use.label});
+    summary_.row_groups.push_back({use.label, "constraint '" + use.label + "' (" + std::to_string(use.rows.rows) + ")",
+                                   first, use.rows.rows, false});
+    for (int r = 0; r < use.rows.rows; ++r) {
+      row_lower_.push_back(use.rows.lower[at(r)]);
+      row_upper_.push_back(use.rows.upper[at(r)]);
+      (use.rows.lower[at(r)] == use.rows.upper[at(r)] ? summary_.equalities : summary_.inequalities) += 1;
+    }
+  }
+  row_.assign(row_lower_.size(), 0.0);
+}
+
+void Assembly::make_scales() {
+  scale_.assign(at(free_count_), 1.0);
+  std::size_t entry = 0;
+  for (const auto& curve : scene_.curves) {
+    for (const FieldDeclaration& field : curve->declaration.fields) {
+      for (int i = 0; i < field.count; ++i, ++entry) {
+        const FieldEntry& e = entries_[entry];
+        if (e.block < 0 || !(is_curved(e.manifold) || e.manifold == Manifold::circle)) continue;
+        const double length = local_edge_length(curve->view, e.arc_fraction);
+        for (int u = blocks_.begin[at(e.block)]; u < blocks_.begin[at(e.block) + 1]; ++u) scale_[at(u)] = length;
+      }
+    }
+  }
+}
+
+void Assembly::make_patterns() {
+  hessian_pattern_ = HessianPattern();
+  jacobian_pattern_.clear();
+  std::vector<int> free_stencil;
+  const auto stencil = [&](const SiteTable& table, int place) {
+    free_stencil.clear();
+    for (int k = 0; k < table.width(); ++k) {
+      const int unknown = table.unknown[at(place * table.width() + k)];
+      free_stencil.push_back(unknown < 0 ? -1 : free_[at(unknown)]);
+    }
+  };
+  const auto has_second_order = [](const SiteTable& table) { return !table.modulus.empty() || table.bends(); };
+
+  for (const SiteTable& table : tables_) {
+    for (int i = 0; i < table.count(); ++i) {
+      stencil(table, i);
+      if (has_second_order(table)) hessian_pattern_.couple(blocks_, free_stencil.data(), table.width());
+      if (table.declaration->site != Site::closure) continue;
+      for (int a = 0; a < table.values(); ++a) jacobian_pattern_.add_row(free_stencil.data(), table.width());
+    }
+  }
+  for (const ConstraintRows& rows : constraints_) {
+    for (int r = 0; r < rows.rows(); ++r) {
+      const int* unknown = rows.unknown.data() + rows.unknown_begin[at(r)];
+      const int count = rows.unknown_begin[at(r) + 1] - rows.unknown_begin[at(r)];
+      hessian_pattern_.couple(blocks_, unknown, count);
+      jacobian_pattern_.add_row(unknown, count);
+    }
+  }
+  hessian_pattern_.finish(blocks_);
+
+  closure_position_.clear();
+  int row = 0;
+  for (SiteTable& table : tables_) {
+    table.hessian_position.clear();
+    const bool closure = table.declaration->site == Site::closure;
+    for (int i = 0; i < table.count(); ++i) {
+      stencil(table, i);
+      if (has_second_order(table)) {
+        for (int a = 0; a < table.width(); ++a) {
+          for (int b = 0; b <= a; ++b) {
+            const int ua = free_stencil[at(a)];
+            const int ub = free_stencil[at(b)];
+            table.hessian_position.push_back(ua < 0 || ub < 0 ? -1 : hessian_pattern_.position(blocks_, ua, ub));
+          }
+        }
+      }
+      if (!closure) continue;
+      for (int a = 0; a < table.values(); ++a, ++row) {
+        for (const int u : free_stencil) closure_position_.push_back(u < 0 ? -1 : jacobian_pattern_.position(row, u));
+      }
+    }
+  }
+  for (ConstraintRows& rows : constraints_) rows.locate(blocks_, hessian_pattern_, jacobian_pattern_);
+  make_order();
+}
+
+void Assembly::make_order() {
+  const int n = free_count_;
+  const int m = rows();
+  std::vector<double> key(at(n + m), 0.0);
+  for (const FieldEntry& entry : entries_) {
+    if (entry.block < 0) continue;
+    // A curve's length reads the whole curve: it comes last.
+    const double place = entry.manifold == Manifold::real && blocks_.size(entry.block) == 1 && entry.arc_fraction > 1.5
+                             ? infinity
+                             : entry.arc_fraction;
+    for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) key[at(u)] = place;
+  }
+  const SparsityPattern pattern = jacobian_pattern_.view();
+  for (int r = 0; r < m; ++r) {
+    double last = 0.0;
+    for (int k = pattern.begin[at(r)]; k < pattern.begin[at(r) + 1]; ++k) {
+      const double place = key[at(pattern.inner[at(k)])];
+      if (place < infinity) last = std::max(last, place);
+    }
+    key[at(n + r)] = last;
+  }
+  order_.resize(at(n + m));
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return key[at(a)] < key[at(b)]; });
+}
+
+}  // namespace bowstring
