@@ -453,6 +453,14 @@ bool Builder::check_declaration(const Curve& curve, const ComponentChoice& choic
     if (!field.fixed.empty() && field.fixed.size() != tangents) {
       return broken("declares field '" + field.name + "' with 'fixed' flags that do not fit its count");
     }
+    for (int i = 0; is_curved(field.manifold) && !field.fixed.empty() && i < field.count; ++i) {
+      const auto first = field.fixed.begin() + i * tangent_count(field.manifold, field.dimension);
+      const auto free = std::count(first, first + tangent_count(field.manifold, field.dimension), 0);
+      if (free != 0 && free != tangent_count(field.manifold, field.dimension)) {
+        return broken("holds entry " + std::to_string(i) + " of field '" + field.name +
+                      "' in part; a rotation or direction is held as a whole");
+      }
+    }
   }
   for (const SiteDeclaration& site : curve.declaration.sites) {
     const bool stencil_fits = site.stencil.size() == at(site.count * site.width);
