@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <memory>
+#include <mutex>
 #include <string_view>
+#include <vector>
 
 #include <boost/dll/shared_library.hpp>
 
@@ -112,6 +114,20 @@ Status check_library_file(const std::string& library) {
   return check_abi(library, contents.abi_tag, "section " + std::string(abi_section));
 }
 
+namespace {
+
+/// Objects and functions of a library outlive every owner of a handle, and this process's static destructors: it is
+/// never closed.
+const boost::dll::shared_library& keep_open(std::unique_ptr<boost::dll::shared_library> handle) {
+  static std::mutex lock;
+  static auto& handles = *new std::vector<std::unique_ptr<boost::dll::shared_library>>;
+  const std::lock_guard<std::mutex> guard(lock);
+  handles.push_back(std::move(handle));
+  return *handles.back();
+}
+
+}  // namespace
+
 Status open_library(const std::string& library, const PluginDescriptor** out) {
   namespace dll = boost::dll;
   auto handle = std::make_unique<dll::shared_library>();
@@ -122,8 +138,7 @@ Status open_library(const std::string& library, const PluginDescriptor** out) {
     return failure(library, "cannot be opened: " + loader_text(library),
                    "rebuild it, and install the libraries that it needs (ldd names them)");
   }
-  // Objects and functions of the library outlive every owner of a handle: it is never closed.
-  const dll::shared_library& open = *handle.release();
+  const dll::shared_library& open = keep_open(std::move(handle));
   if (!open.has(plugin_symbol)) {
     return not_a_plugin(library, "it exports no symbol '" + std::string(plugin_symbol) + "'");
   }
