@@ -5,11 +5,9 @@
 
 #include <unistd.h>
 
+#include "apps/outputs.hpp"
 #include "apps/shell.hpp"
-#include "core/composition/defaults.hpp"
-#include "core/interfaces/writer.hpp"
 #include "core/result/document.hpp"
-#include "core/result/write_file.hpp"
 
 namespace bowstring::apps {
 
@@ -18,38 +16,6 @@ namespace {
 std::atomic<bool> interrupted{false};
 
 extern "C" void on_interrupt(int) { interrupted.store(true); }
-
-struct Output {
-  ComponentChoice writer;
-  std::string file;
-};
-
-/// Resolves every `--write writer=file` before anything is solved.
-int find_writers(const std::vector<std::string>& write, Registry& registry, std::vector<Output>& out) {
-  int code = exit_converged;
-  for (const std::string& text : write) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-      complain("--write " + text + ": found no writer=file; expected for instance --write svg=picture.svg");
-      code = exit_wrong_input;
-      continue;
-    }
-    Output output;
-    output.file = text.substr(equals + 1);
-    output.writer.kind = Kind::writer;
-    output.writer.name = text.substr(0, equals);
-    Status status;
-    output.writer.descriptor = registry.find(Kind::writer, output.writer.name, status);
-    if (output.writer.descriptor == nullptr) {
-      complain("--write " + text + ": " + status.text);
-      code = status.code == Code::invalid_input ? exit_wrong_input : exit_plugin_failed;
-      continue;
-    }
-    output.writer.parameters = default_parameters(*output.writer.descriptor);
-    out.push_back(std::move(output));
-  }
-  return code;
-}
 
 /// One line that is drawn over and over on a terminal; silent elsewhere.
 class Progress {
@@ -110,22 +76,6 @@ void print_table(const Session& session, const Solution& solution, const Reading
               number(certificate.maximum_stretch, 4).c_str());
 }
 
-int write_outputs(const std::vector<Output>& outputs, const std::string& document) {
-  int code = exit_converged;
-  for (const Output& output : outputs) {
-    Status status;
-    const auto writer = create<Writer>(output.writer, status);
-    const std::string temporary = temporary_name(output.file);
-    if (status.ok()) status = writer->write(document.c_str(), temporary.c_str());
-    if (status.ok()) status = publish_file(temporary, output.file);
-    if (status.ok()) continue;
-    std::remove(temporary.c_str());
-    complain("--write " + output.writer.name + "=" + output.file + ": " + status.text);
-    code = exit_plugin_failed;
-  }
-  return code;
-}
-
 }  // namespace
 
 int solve(const CommonOptions& common, const SolveOptions& options) {
@@ -133,8 +83,10 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
   request.file = options.file;
   if (!parse_overrides(options.set, request.overrides)) return exit_wrong_input;
   PluginHost host = make_host(common, options.file);
-  std::vector<Output> outputs;
-  if (const int code = find_writers(options.write, host, outputs); code != exit_converged) return code;
+  Outputs outputs;
+  if (const int code = outputs.prepare(options.file, options.out, options.write, host); code != exit_converged) {
+    return code;
+  }
 
   Refusal refusal;
   const std::unique_ptr<Session> session = prepare(request, host, refusal);
@@ -157,13 +109,7 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
     print_table(*session, solution, readings);
   }
   for (const std::string& warning : solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  if (!options.out.empty()) {
-    if (Status status = write_file(options.out, document); !status.ok()) {
-      complain("--out: " + status.text);
-      return exit_wrong_input;
-    }
-  }
-  if (const int code = write_outputs(outputs, document); code != exit_converged) return code;
+  if (const int code = outputs.write(document); code != exit_converged) return code;
   return solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
 }
 

@@ -118,7 +118,7 @@ class NumberReader {
     const bool low = rules_.lower_exclusive ? number.value <= rules_.lower : number.value < rules_.lower;
     const bool high = number.value > rules_.upper;
     if (!low && !high) return true;
-    fail(subject_ + " is " + description(node_) + ", out of bounds",
+    fail(subject_ + " is " + (node_.is_text() ? node_.text : decimal(number.value)) + ", out of bounds",
          expected_bounds(rules_.lower, rules_.upper, rules_.lower_exclusive, unit),
          std::string("write a ") + (low ? "larger" : "smaller") + " number");
     return false;

@@ -64,7 +64,7 @@ TEST_CASE("an error in a base stands at its place in the base, before none of th
                            "geometry = { type = \"csv\", file = \"one.csv\" }\n");
   CHECK(bench.errors("schema = 1\nbase = \"base.toml\"\n[set]\n\"vessel.v.radius\" = \"0 mm\"\n"
                      "\"vessel.v.geometry.coordinates\" = \"RSA\"\n") ==
-        Texts{"scene.toml:4:21: 'radius' of vessel 'v' is text \"0 mm\", out of bounds; expected more than 0 mm; write "
+        Texts{"scene.toml:4:21: 'radius' of vessel 'v' is 0 mm, out of bounds; expected more than 0 mm; write "
               "a larger number",
               "scene.toml:5:35: 'coordinates' of geometry 'csv' of vessel 'v' is text \"RSA\"; expected 'LPS' or "
               "'RAS'; did you mean 'RAS'?",

@@ -54,7 +54,7 @@ max-iterations = 2.5
             "each; rename one of the two",
             "scene.toml:10:10: unknown vessel 'ilac' in 'vessel' of wire 'iliac'; expected one of: iliac; did you "
             "mean 'iliac'?",
-            "scene.toml:11:10: 'radius' of wire 'iliac' is whole number 0, out of bounds; expected more than 0 mm; "
+            "scene.toml:11:10: 'radius' of wire 'iliac' is 0, out of bounds; expected more than 0 mm; "
             "write a larger number",
             "scene.toml:13:8: unknown energy 'anchorin'; expected one of: anchoring, axial-tension, point-load, "
             "vessel-strain, wire-bending; did you mean 'anchoring'?",
@@ -154,7 +154,7 @@ TEST_CASE("a second-order verdict cannot be demanded yet") {
               "verdict exists yet in this version; expected 'none'; remove it: the result says whether it is an "
               "equilibrium, not whether it is a minimum"});
   CHECK(bench.errors(test::small_scene, {{"certificate.multiplier", "1 N"}}) ==
-        Texts{"--set certificate.multiplier=1 N: 'multiplier' of [certificate] is text \"1 N\", out of bounds; "
+        Texts{"--set certificate.multiplier=1 N: 'multiplier' of [certificate] is 1 N, out of bounds; "
               "expected at most 0 N; write a smaller number"});
 }
 
@@ -282,7 +282,7 @@ TEST_CASE("profiles") {
         "a row of 'table' of 'radius' of wire 'w' is a list of 3; expected a pair [arc length, value]; write [\"0 "
         "mm\", <value>]");
   CHECK(error("wire.w.radius", "{ table = [[0, 0]] }") ==
-        "a value of 'radius' of wire 'w' is whole number 0, out of bounds; expected more than 0 mm; write a larger "
+        "a value of 'radius' of wire 'w' is 0, out of bounds; expected more than 0 mm; write a larger "
         "number");
   CHECK(error("wire.w.radius", "{ segments = { a = 1 }, measured-from = \"tip\" }") ==
         "'measured-from' of 'radius' of wire 'w' without a 'table'; expected it beside arc lengths only; remove it");

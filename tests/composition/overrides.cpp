@@ -125,7 +125,7 @@ TEST_CASE("an override is checked like what stands in a file, at its own place")
         Texts{"--set wire.w.raduis=1: unknown key 'raduis' in wire 'w'; expected one of: name, vessel, ends, "
               "kinematics, nodes, radius; did you mean 'radius'?"});
   CHECK(errors_of(bench, "wire.w.radius", "0 mm") ==
-        Texts{"--set wire.w.radius=0 mm: 'radius' of wire 'w' is text \"0 mm\", out of bounds; expected more than 0 "
+        Texts{"--set wire.w.radius=0 mm: 'radius' of wire 'w' is 0 mm, out of bounds; expected more than 0 "
               "mm; write a larger number"});
   CHECK(errors_of(bench, "wire.w.radius", "[1, 2") ==
         Texts{"--set wire.w.radius=[1, 2: 'radius' of wire 'w' is text \"[1, 2\"; expected a quantity in mm, more "

@@ -36,7 +36,7 @@ TEST_CASE("a plugin that cannot be used is no error of the input, and does not h
 
   const CompositionOutcome both = bench.load("scene.toml", {{"wire.w.radius", "0"}});
   CHECK(both.plugin_failure.code == Code::failed);
-  CHECK(texts(both.errors) == Texts{"--set wire.w.radius=0: 'radius' of wire 'w' is whole number 0, out of bounds; "
+  CHECK(texts(both.errors) == Texts{"--set wire.w.radius=0: 'radius' of wire 'w' is 0, out of bounds; "
                                     "expected more than 0 mm; write a larger number"});
 }
 

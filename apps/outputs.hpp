@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/model/scene.hpp"
+
+namespace bowstring::apps {
+
+/// Where results go: `--out FILE` and every `--write WRITER=FILE`. All are written, or none is.
+class Outputs {
+ public:
+  /// Finds the writers and looks at the places before anything is solved: what cannot be written, stands there twice,
+  /// or is the composition itself is reported on stderr. Returns an exit code.
+  int prepare(const std::string& composition, const std::string& out, const std::vector<std::string>& write,
+              Registry& registry);
+
+  /// Writes everything beside its place, then renames. Returns an exit code: that of a place which cannot be written
+  /// any more, or of a writer that fails, both reported on stderr.
+  int write(const std::string& document) const;
+
+ private:
+  struct Target {
+    std::string label;       ///< as on the command line: "--out", "--write svg=picture.svg"
+    std::string file;
+    ComponentChoice writer;  ///< without descriptor: the document itself
+  };
+
+  int check_places(const std::string& composition) const;
+
+  std::vector<Target> targets_;
+};
+
+}  // namespace bowstring::apps
