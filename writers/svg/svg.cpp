@@ -1,0 +1,24 @@
+#include "core/interfaces/writer.hpp"
+#include "core/result/write_file.hpp"
+#include "plugins/sdk/plugin.hpp"
+#include "writers/reading/result.hpp"
+#include "writers/svg/figure.hpp"
+
+namespace bowstring {
+namespace {
+
+/// State 1, State 2, wires, lumen walls and contacts at one scale; a scene in space in two orthogonal views.
+class SvgWriter final : public Writer {
+ public:
+  explicit SvgWriter(const ParameterSet&) {}
+
+  Status write(const char* document, const char* file) noexcept override {
+    return guard([&] { return write_file(file, svg_figure(read_result(document))); });
+  }
+};
+
+}  // namespace
+}  // namespace bowstring
+
+BOWSTRING_PLUGIN(bowstring::component<bowstring::Writer, bowstring::SvgWriter>(
+    bowstring::Kind::writer, "svg", "A figure of both states with the forces on the wall"))
