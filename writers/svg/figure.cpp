@@ -25,7 +25,7 @@ std::string summary(const Result& result) {
   std::string out = result.status;
   if (result.status != "converged" && !result.reason.empty()) out += ": " + result.reason;
   const auto add = [&](const char* format, double value) {
-    if (std::isfinite(value)) out += (out.empty() ? "" : "  ·  ") + quantity(format, value);
+    if (std::isfinite(value)) out += (out.empty() ? "" : " · ") + quantity(format, value);
   };
   add("peak displacement %.4g mm", result.peak_displacement);
   if (result.contact_count > 0.0) {

@@ -1,0 +1,32 @@
+#include <doctest/doctest.h>
+
+#include "tests/writers/small_result.hpp"
+
+namespace bowstring::testing {
+
+TEST_CASE("csv: one row per node, units in the names, cells empty where nothing is known") {
+  const Written plane = written("csv", small_result(2));
+  REQUIRE(plane.good);
+  CHECK(plane.text ==
+        "# title: Small & straight\n"
+        "# status: converged, all thresholds of the certificate hold\n"
+        "# units: mm, 1/mm, N; x, y, z and s are State 2, reference_ is State 1\n"
+        "curve,kind,node,s_mm,x_mm,y_mm,reference_x_mm,reference_y_mm,displacement_mm,radius_mm,curvature_per_mm,"
+        "contact_force_N\n"
+        "iliac,vessel,0,0,0,0,0,0,0,6,0,\n"
+        "iliac,vessel,1,50.04,50,2,50,0,2,5,0.0016,\n"
+        "iliac,vessel,2,100.08,100,0,100,0,0,6,0,\n"
+        "\"wire, stiff\",wire,0,0,0,0,0,0,0,0.4,0,\n"
+        "\"wire, stiff\",wire,1,30,30,0,30,0,0,0.4,0,1\n"
+        "\"wire, stiff\",wire,2,70,70,0,70,0,0,0.4,0,4\n"
+        "\"wire, stiff\",wire,3,100,100,0,100,0,0,0.4,,\n");
+}
+
+TEST_CASE("csv: a scene in space has three coordinates") {
+  const Written space = written("csv", small_result(3));
+  REQUIRE(space.good);
+  CHECK(space.text.find("x_mm,y_mm,z_mm,reference_x_mm,reference_y_mm,reference_z_mm,") != std::string::npos);
+  CHECK(space.text.find("iliac,vessel,1,50.04,50,2,3,50,0,3,2,5,0.0016,\n") != std::string::npos);
+}
+
+}  // namespace bowstring::testing
