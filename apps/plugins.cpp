@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -68,11 +69,23 @@ Json schema(const ParameterDeclaration* parameters, int count) {
   return out;
 }
 
+/// "N/mm^2 or N/mm"; an alternative without a unit is a bare number.
+std::string unit_text(const std::string& alternatives) {
+  std::string out;
+  for (std::size_t begin = 0; begin <= alternatives.size();) {
+    const std::size_t end = std::min(alternatives.find('|', begin), alternatives.size());
+    const std::string unit = alternatives.substr(begin, end - begin);
+    out += (out.empty() ? "" : " or ") + (unit.empty() ? "a bare number" : unit);
+    begin = end + 1;
+  }
+  return out;
+}
+
 void print_schema(const ParameterDeclaration* parameters, int count, int indent) {
   for (int i = 0; i < count; ++i) {
     const ParameterDeclaration& p = parameters[i];
     std::string facts = type_name(p.type);
-    if (*p.unit != '\0') facts += std::string(", ") + p.unit;
+    if (*p.unit != '\0') facts += ", " + unit_text(p.unit);
     if (*p.choices != '\0') facts += std::string(", one of ") + p.choices;
     if (bounded(p.lower)) facts += (p.lower_exclusive ? ", > " : ", >= ") + number(p.lower);
     if (bounded(p.upper)) facts += ", <= " + number(p.upper);
