@@ -20,6 +20,9 @@ std::string number(double value, int digits = 4) {
   return text;
 }
 
+/// The larger of two; what is not a number counts as largest of all.
+double worst(double current, double value) { return std::isnan(current) || value <= current ? current : value; }
+
 /// Largest entry of the Lagrangian gradient that no active bound holds, in N.
 void judge_stationarity(const Assembly& assembly, Span<const double> q, const std::vector<double>& full_gradient,
                         Certificate& out) {
@@ -44,7 +47,7 @@ void judge_stationarity(const Assembly& assembly, Span<const double> q, const st
     }
     if (at_lower) gradient = std::min(gradient, 0.0);
     if (at_upper) gradient = std::max(gradient, 0.0);
-    out.stationarity = std::max(out.stationarity, std::fabs(gradient) / assembly.stationarity_scale()[at(free)]);
+    out.stationarity = worst(out.stationarity, std::fabs(gradient) / assembly.stationarity_scale()[at(free)]);
   }
 }
 
@@ -54,7 +57,7 @@ void judge_rows(const Assembly& assembly, const std::vector<double>& residual, S
   for (int r = 0; r < assembly.rows(); ++r) {
     const double lower = assembly.row_lower()[at(r)];
     const double upper = assembly.row_upper()[at(r)];
-    out.penetration = std::max({out.penetration, residual[at(r)] - upper, lower - residual[at(r)]});
+    out.penetration = worst(worst(out.penetration, residual[at(r)] - upper), lower - residual[at(r)]);
     if (lower == upper) continue;
     // A multiplier pushes away from one bound; where that bound does not exist its sign is wrong.
     const double multiplier = multipliers[at(r)];
@@ -64,7 +67,7 @@ void judge_rows(const Assembly& assembly, const std::vector<double>& residual, S
     const double distance = std::fabs(residual[at(r)] - bound);
     out.minimum_multiplier = any ? std::min(out.minimum_multiplier, signed_multiplier) : signed_multiplier;
     any = true;
-    out.complementarity = std::max(out.complementarity, std::fabs(multiplier) * distance);
+    out.complementarity = worst(out.complementarity, std::fabs(multiplier) * distance);
     if (distance <= weak_gap && signed_multiplier <= weak_multiplier) out.weakly_active.push_back(r);
   }
 }
