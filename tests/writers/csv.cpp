@@ -29,4 +29,18 @@ TEST_CASE("csv: a scene in space has three coordinates") {
   CHECK(space.text.find("iliac,vessel,1,50.04,50,2,3,50,0,3,2,5,0.0016,\n") != std::string::npos);
 }
 
+TEST_CASE("csv: contacts at one node add up; what failed or is null is empty, and never a word") {
+  std::string document = edited_result(small_result(2), "\"s_mm\": 70, \"force_N\"", "\"s_mm\": 31, \"force_N\"");
+  document = edited_result(document, "[50, 2]", "[50, null]");
+  document = edited_result(document, "\"status\": \"converged\"", "\"status\": \"failed\"");
+  document = edited_result(document, "all thresholds of the certificate hold", "two\\nlines");
+  const Written table = written("csv", document);
+  REQUIRE(table.good);
+  CHECK(table.text.find("# status: failed, two lines\n") != std::string::npos);
+  CHECK(table.text.find("\"wire, stiff\",wire,1,30,30,0,30,0,0,0.4,0,5\n") != std::string::npos);
+  CHECK(table.text.find("\"wire, stiff\",wire,2,70,70,0,70,0,0,0.4,0,\n") != std::string::npos);
+  CHECK(table.text.find("iliac,vessel,1,50.04,50,,50,0,,5,0.0016,\n") != std::string::npos);
+  CHECK(table.text.find("nan") == std::string::npos);
+}
+
 }  // namespace bowstring::testing

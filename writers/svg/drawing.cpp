@@ -111,7 +111,7 @@ std::string contacts(const Result& result, const Panel& panel) {
     const double radius = style::contact_radius(contact.force, largest);
     if (node < 0 || radius < least_circle) continue;
     const Vector3& point = wire.points[static_cast<std::size_t>(node)];
-    if (is_finite(point)) out += circle(panel.place(point), radius, {{"class", "contact"}});
+    if (is_finite(point)) out += contact_symbol(panel.place(point), radius, {{"class", "contact"}});
   }
   return out + close_group();
 }

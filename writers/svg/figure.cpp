@@ -1,7 +1,6 @@
 #include "writers/svg/figure.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "writers/svg/markup.hpp"
 #include "writers/svg/style.hpp"
@@ -12,37 +11,33 @@ namespace {
 
 constexpr double title_line = 22.0;
 constexpr double text_line = 17.0;
-constexpr std::size_t columns = 135;  // of the page, in the font of the notes
-
-std::string quantity(const char* format, double value) {
-  char buffer[80];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
+constexpr std::size_t title_columns = 80;
+constexpr std::size_t columns = 120;  // of the page, in the font of the notes
 
 /// What a reader wants to know before looking: the verdict and the main figures, as far as they are known.
 std::string summary(const Result& result) {
   std::string out = result.status;
   if (result.status != "converged" && !result.reason.empty()) out += ": " + result.reason;
-  const auto add = [&](const char* format, double value) {
-    if (std::isfinite(value)) out += (out.empty() ? "" : " · ") + quantity(format, value);
+  const auto add = [&](const char* before, double value, int digits, const char* after) {
+    if (std::isfinite(value)) out += (out.empty() ? "" : " · ") + (before + short_number(value, digits)) + after;
   };
-  add("peak displacement %.4g mm", result.peak_displacement);
+  add("peak displacement ", result.peak_displacement, 4, " mm");
   if (result.contact_count > 0.0) {
-    add("%.0f contacts", result.contact_count);
-    add("contact force %.4g N in all", result.contact_force);
+    add("", result.contact_count, 9, result.contact_count == 1.0 ? " contact" : " contacts");
+    add("contact force ", result.contact_force, 4, " N in all");
   }
-  add("energy %.5g N mm", result.total_energy);
+  add("energy ", result.total_energy, 5, " N mm");
   return out;
 }
 
 std::string heading(const Result& result, double& y) {
   std::string out;
-  if (!result.title.empty()) {
+  out += open_group({{"fill", style::ink}, {"font-size", "17"}, {"font-weight", "bold"}});
+  for (const std::string& row : wrapped(result.title, title_columns)) {
     y += title_line;
-    out += open_group({{"fill", style::ink}, {"font-size", "17"}, {"font-weight", "bold"}});
-    out += text_at({{page_margin, y}}, result.title) + close_group();
+    out += text_at({{page_margin, y}}, row);
   }
+  out += close_group();
   const bool good = result.status == "converged";
   out += open_group({{"fill", good ? style::soft_ink : style::contact_fill}, {"font-size", "12.5"}});
   for (const std::string& row : wrapped(summary(result), columns)) {
@@ -66,7 +61,8 @@ std::string svg_figure(const Result& result) {
   const std::string body = draw_panels(result, layout) + draw_legend(result, layout, height);
   const std::string width_text = two_decimals(layout.width), height_text = two_decimals(height);
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-         "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"" + width_text + "\" height=\"" + height_text +
+         "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"" + width_text + "\" height=\"" +
+         height_text +
          "\" viewBox=\"0 0 " + width_text + " " + height_text +
          "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12\">\n"
          "<title>" + escaped(result.title.empty() ? "Bowstring" : result.title) + "</title>\n"

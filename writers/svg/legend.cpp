@@ -44,7 +44,9 @@ Entry reference_entry() {
   std::string symbol;
   for (const double y : {-7.0, 7.0}) {
     symbol += line({{0.0, y}}, {{sample_width, y}},
-                   {{"stroke", style::state1}, {"stroke-width", style::wall_width}, {"stroke-dasharray", style::wall1_dashes}});
+                   {{"stroke", style::state1},
+                    {"stroke-width", style::wall_width},
+                    {"stroke-dasharray", style::wall1_dashes}});
   }
   return {symbol + sample_line(style::state1, style::centerline_width, style::centerline1_dashes), "vessel, State 1"};
 }
@@ -57,8 +59,8 @@ std::string force_text(double force) {
 /// Circles of the largest force and of a quarter of it, which has half the radius.
 Entry contact_entry(double largest) {
   std::string symbol = open_group(contact_attributes());
-  symbol += circle({{8.0, 0.0}}, style::contact_radius(0.25 * largest, largest));
-  symbol += circle({{22.0, 0.0}}, style::contact_radius(largest, largest));
+  symbol += contact_symbol({{8.0, 0.0}}, style::contact_radius(0.25 * largest, largest));
+  symbol += contact_symbol({{22.0, 0.0}}, style::contact_radius(largest, largest));
   return {symbol + close_group(),
           "contact, " + force_text(0.25 * largest) + " and " + force_text(largest) + ": area by force"};
 }
@@ -72,7 +74,8 @@ std::vector<Entry> entries(const Result& result) {
   }
   for (std::size_t i = 0; i < result.curves.size(); ++i) {
     if (!result.curves[i].wire) continue;
-    out.push_back({sample_line(style::wire_color(result, static_cast<int>(i)), "2", ""), "wire " + result.curves[i].name});
+    const char* color = style::wire_color(result, static_cast<int>(i));
+    out.push_back({sample_line(color, "2", ""), "wire " + result.curves[i].name});
   }
   if (const double largest = style::largest_force(result); largest > 0.0) out.push_back(contact_entry(largest));
   if (!result.supports.empty()) {

@@ -1,17 +1,18 @@
 #include "writers/svg/markup.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 
 namespace bowstring {
 
 namespace {
 
-std::string formatted(const char* format, double value) {
+/// As printf's, with a decimal point in every locale.
+std::string formatted(double value, std::chars_format format, int precision) {
   char buffer[400];  // the largest double has 309 digits before the point
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, format, precision);
+  return std::string(buffer, end.ptr);
 }
 
 std::string pair(const Vector2& point) { return two_decimals(point[0]) + "," + two_decimals(point[1]); }
@@ -56,11 +57,13 @@ std::string escaped(const std::string& text) {
 
 std::string two_decimals(double value) {
   if (!std::isfinite(value)) return "–";
-  const std::string out = formatted("%.2f", value);
+  const std::string out = formatted(value, std::chars_format::fixed, 2);
   return out == "-0.00" ? "0.00" : out;
 }
 
-std::string short_number(double value) { return formatted("%.6g", value); }
+std::string short_number(double value, int digits) {
+  return formatted(value, std::chars_format::general, digits);
+}
 
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   std::vector<std::string> out;

@@ -15,8 +15,8 @@ std::string escaped(const std::string& text);
 /// Two decimals; "–" for what is not finite.
 std::string two_decimals(double value);
 
-/// A number of mm or N without trailing zeros: "20", "0.5".
-std::string short_number(double value);
+/// A number with at most so many significant digits and without trailing zeros: "20", "0.5".
+std::string short_number(double value, int digits = 6);
 
 /// The text in lines of at most `columns` characters, broken at blanks where it has any.
 std::vector<std::string> wrapped(const std::string& text, std::size_t columns);

@@ -1,5 +1,6 @@
 #include "writers/svg/symbols.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "writers/svg/style.hpp"
@@ -12,7 +13,8 @@ constexpr double support_height = 11.0;      // px
 constexpr double support_half_width = 6.5;
 constexpr double axis_length = 22.0;
 constexpr double arrow_head = 4.5;
-constexpr double foreshortened = 0.12;       // of an axis' length: shorter ones are drawn as a dot
+constexpr double foreshortened = 0.25;       // of an axis' length: an arrow is not longer than its head then
+constexpr double axis_end_radius = 3.6;
 constexpr const char* axis_name[] = {"x", "y", "z"};
 
 std::string arrow(const Vector2& from, const Vector2& to) {
@@ -23,10 +25,30 @@ std::string arrow(const Vector2& from, const Vector2& to) {
          area({{to, base + 0.45 * arrow_head * across, base - 0.45 * arrow_head * across}}, {{"stroke", "none"}});
 }
 
+/// Projection of a unit axis, with the page's y, which points down.
+Vector2 on_page(const View& view, int axis) {
+  const Vector2 p = project(view, Vector3::unit(axis));
+  return {{p[0], -p[1]}};
+}
+
+std::string axis_end(const Vector2& center, bool to_reader) {
+  std::string out = circle(center, axis_end_radius, {{"fill", "#FFFFFF"}});
+  if (to_reader) return out + circle(center, 1.3, {{"stroke", "none"}});
+  const double d = std::sqrt(0.5) * axis_end_radius;
+  out += line(center + Vector2{{-d, -d}}, center + Vector2{{d, d}});
+  return out + line(center + Vector2{{-d, d}}, center + Vector2{{d, -d}});
+}
+
 }  // namespace
 
 Attributes contact_attributes() {
-  return {{"fill", style::contact_fill}, {"fill-opacity", "0.7"}, {"stroke", "#FFFFFF"}, {"stroke-width", "0.6"}};
+  return {{"fill", style::contact_fill}, {"fill-opacity", "0.7"}, {"stroke", "#FFFFFF"}};
+}
+
+std::string contact_symbol(const Vector2& at, double radius, const Attributes& more) {
+  Attributes attributes{{"stroke-width", two_decimals(std::min(0.6, 0.2 * radius))}};
+  attributes.insert(attributes.end(), more.begin(), more.end());
+  return circle(at, radius, attributes);
 }
 
 Attributes support_attributes() {
@@ -41,18 +63,17 @@ std::string support_symbol(const Vector2& at, const Vector2& outward) {
 
 std::string triad(const Vector2& center, const View& view, int axes) {
   std::string out = open_group({{"stroke", style::soft_ink}, {"stroke-width", "1.1"}, {"fill", style::soft_ink}});
+  Vector2 sum;
+  for (int k = 0; k < axes; ++k) sum = sum + on_page(view, k);
   for (int k = 0; k < axes; ++k) {
-    const Vector2 p = project(view, Vector3::unit(k));
-    const Vector2 direction{{p[0], -p[1]}};  // the page's y points down
+    const Vector2 direction = on_page(view, k);
     const double length = norm(direction);
+    const bool along_view = length < foreshortened;
     const Vector2 tip = center + axis_length * direction;
-    if (length < foreshortened) {
-      out += circle(center, 2.2, {{"stroke", "none"}});
-    } else {
-      out += arrow(center, tip);
-    }
-    const Vector2 label = length < foreshortened ? center + Vector2{{-9.0, 9.0}} : tip + (9.0 / length) * direction;
-    out += open_group({{"stroke", "none"}}) + text_at({{label[0], label[1] + 4.0}}, axis_name[k], "middle") + close_group();
+    out += along_view ? axis_end(center, cross(view.right, view.up)[k] > 0.0) : arrow(center, tip);
+    const Vector2 label = along_view ? center - 12.0 * normalized(sum) : tip + (9.0 / length) * direction;
+    out += open_group({{"stroke", "none"}});
+    out += text_at({{label[0], label[1] + 4.0}}, axis_name[k], "middle") + close_group();
   }
   return out + close_group();
 }

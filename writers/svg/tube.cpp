@@ -11,11 +11,34 @@ constexpr double degree = 3.14159265358979323846 / 180.0;
 constexpr double finest_turn = 6.0 * degree;  // invisible as a corner at the scale of a figure
 constexpr int most_pieces = 8;
 constexpr double least_length = 0.01;  // px, the last digit of a coordinate
+constexpr double most_growth = 0.95;   // of the radius per length of an edge
 constexpr double depth = 0.02;         // part of the radius by which a point counts as inside; above chord errors
 
-Vector2 left_normal(const Vector2& from, const Vector2& to) {
-  const Vector2 tangent = normalized(to - from);
-  return {{-tangent[1], tangent[0]}};
+/// One edge of a tube. Two discs have common tangents where neither covers the other; `growth` is the sine of their
+/// angle with the edge, kept below 1.
+struct Edge {
+  Vector2 start, along, left;  ///< unit tangent and its left normal
+  double length, start_radius, end_radius, growth, cosine;
+
+  Edge(const Tube& tube, std::size_t i)
+      : start(tube.points[i]), start_radius(tube.radius[i]), end_radius(tube.radius[i + 1]) {
+    const Vector2 step = tube.points[i + 1] - start;
+    length = norm(step);
+    along = (1.0 / length) * step;
+    left = {{-along[1], along[0]}};
+    growth = std::clamp((end_radius - start_radius) / length, -most_growth, most_growth);
+    cosine = std::sqrt(1.0 - growth * growth);
+  }
+
+  /// Unit normal of the tangent on the left (sign 1) or on the right (sign −1).
+  Vector2 normal(double sign) const { return sign * cosine * left - growth * along; }
+  Vector2 end() const { return start + length * along; }
+};
+
+std::vector<Edge> edges_of(const Tube& tube) {
+  std::vector<Edge> out;
+  for (std::size_t i = 0; i + 1 < tube.points.size(); ++i) out.emplace_back(tube, i);
+  return out;
 }
 
 /// Signed angle from a to b.
@@ -49,42 +72,55 @@ Vector2 catmull_rom(const Vector2& p0, const Vector2& p1, const Vector2& p2, con
   return (2.0 * t3 - 3.0 * t2 + 1.0) * p1 + (t3 - 2.0 * t2 + t) * m1 + (3.0 * t2 - 2.0 * t3) * p2 + (t3 - t2) * m2;
 }
 
-/// Offsets of the two sides, with an arc around every corner; what an arc of the inner side adds lies inside.
-Polyline side(const Tube& tube, double sign) {
+Polyline arc(const Vector2& center, double radius, const Vector2& from, double angle) {
   Polyline out;
-  Vector2 previous;
-  for (std::size_t i = 0; i + 1 < tube.points.size(); ++i) {
-    const Vector2 normal = left_normal(tube.points[i], tube.points[i + 1]);
-    if (i > 0) {
-      const double angle = turn(previous, normal);
-      const int steps = static_cast<int>(std::abs(angle) / finest_turn);
-      for (int k = 1; k <= steps; ++k) {
-        out.push_back(tube.points[i] + sign * tube.radius[i] * rotated(previous, angle * k / (steps + 1)));
-      }
-    }
-    out.push_back(tube.points[i] + sign * tube.radius[i] * normal);
-    out.push_back(tube.points[i + 1] + sign * tube.radius[i + 1] * normal);
-    previous = normal;
+  const int steps = 1 + static_cast<int>(std::abs(angle) / finest_turn);
+  for (int k = 0; k <= steps; ++k) out.push_back(center + radius * rotated(from, angle * k / steps));
+  return out;
+}
+
+/// What joins the tangents of two edges on one side of their common disc: the point where they cross when that is near
+/// or the corner too slight to be seen; else an arc, which lies inside the tube where it is on the inner side.
+Polyline joint(const Edge& before, const Edge& after, double sign) {
+  const Vector2 normal = before.normal(sign);
+  const double angle = turn(normal, after.normal(sign)), radius = after.start_radius;
+  const bool inner = sign * angle > 0.0;
+  const double room = 0.5 * std::min(before.length, after.length);
+  if (inner ? radius * std::tan(0.5 * std::abs(angle)) <= room : std::abs(angle) < finest_turn) {
+    return {after.start + radius / std::cos(0.5 * angle) * rotated(normal, 0.5 * angle)};
   }
+  return arc(after.start, radius, normal, angle);
+}
+
+/// The envelope of the tube's discs on one side. It doubles back only where the tube bends more sharply than its
+/// radius, and so inside the tube.
+Polyline side(const std::vector<Edge>& edges, double sign) {
+  const Edge &first = edges.front(), &last = edges.back();
+  Polyline out{first.start + first.start_radius * first.normal(sign)};
+  for (std::size_t i = 1; i < edges.size(); ++i) {
+    const Polyline part = joint(edges[i - 1], edges[i], sign);
+    out.insert(out.end(), part.begin(), part.end());
+  }
+  out.push_back(last.end() + last.end_radius * last.normal(sign));
   return out;
 }
 
 /// Whether a disc of the tube covers the point. Those beyond the two open ends do not count.
-bool inside(const Tube& tube, const Vector2& point) {
-  const std::size_t edges = tube.points.size() - 1;
-  for (std::size_t i = 0; i < edges; ++i) {
-    const Vector2 edge = tube.points[i + 1] - tube.points[i];
-    const double along = dot(point - tube.points[i], edge) / norm_squared(edge);
-    if ((i == 0 && along < 0.0) || (i + 1 == edges && along > 1.0)) continue;
-    const double t = std::clamp(along, 0.0, 1.0);
-    const double radius = (1.0 - depth) * ((1.0 - t) * tube.radius[i] + t * tube.radius[i + 1]);
-    if (norm_squared(point - (tube.points[i] + t * edge)) < radius * radius) return true;
+bool inside(const std::vector<Edge>& edges, const Vector2& point) {
+  for (const Edge& edge : edges) {
+    const double along = dot(point - edge.start, edge.along), across = std::abs(dot(point - edge.start, edge.left));
+    if ((&edge == &edges.front() && along < 0.0) || (&edge == &edges.back() && along > edge.length)) continue;
+    // The disc that covers most, as its radius changes along the edge.
+    const double at = std::clamp(along + across * edge.growth / edge.cosine, 0.0, edge.length);
+    const double part = at / edge.length;
+    const double radius = (1.0 - depth) * ((1.0 - part) * edge.start_radius + part * edge.end_radius);
+    if ((along - at) * (along - at) + across * across < radius * radius) return true;
   }
   return false;
 }
 
 /// The point between `outer` and `inner` where the outline enters the tube.
-Vector2 entry(const Tube& tube, Vector2 outer, Vector2 inner) {
+Vector2 entry(const std::vector<Edge>& tube, Vector2 outer, Vector2 inner) {
   for (int k = 0; k < 16; ++k) {
     const Vector2 middle = 0.5 * (outer + inner);
     (inside(tube, middle) ? inner : outer) = middle;
@@ -92,7 +128,7 @@ Vector2 entry(const Tube& tube, Vector2 outer, Vector2 inner) {
   return outer;
 }
 
-void append_visible(const Tube& tube, const Polyline& line, std::vector<Polyline>& out) {
+void append_visible(const std::vector<Edge>& tube, const Polyline& line, std::vector<Polyline>& out) {
   bool was_inside = true;
   for (std::size_t i = 0; i < line.size(); ++i) {
     const bool is_inside = inside(tube, line[i]);
@@ -103,14 +139,13 @@ void append_visible(const Tube& tube, const Polyline& line, std::vector<Polyline
   }
 }
 
-/// The sector on the outer side of a corner, which the two trapezoids beside it leave open.
-Polyline corner(const Vector2& point, double radius, const Vector2& before, const Vector2& after) {
-  const double angle = turn(before, after);
-  const double sign = angle < 0.0 ? 1.0 : -1.0;
-  const int steps = 1 + static_cast<int>(std::abs(angle) / finest_turn);
-  Polyline out{point};
-  for (int k = 0; k <= steps; ++k) out.push_back(point + sign * radius * rotated(before, angle * k / steps));
-  if (angle < 0.0) std::reverse(out.begin(), out.end());
+/// The sector between two edges on one side of their common disc; empty where they overlap there.
+Polyline sector(const Edge& before, const Edge& after, double sign) {
+  const double angle = turn(before.normal(sign), after.normal(sign));
+  if (-sign * angle * after.start_radius <= least_length) return {};
+  Polyline out = arc(after.start, after.start_radius, before.normal(sign), angle);
+  if (sign > 0.0) std::reverse(out.begin(), out.end());
+  out.push_back(after.start);
   return out;
 }
 
@@ -139,22 +174,30 @@ Tube refine(const Tube& given) {
 }
 
 std::vector<Polyline> tube_area(const Tube& tube) {
+  const std::vector<Edge> edges = edges_of(tube);
   std::vector<Polyline> out;
-  Vector2 previous;
-  for (std::size_t i = 0; i + 1 < tube.points.size(); ++i) {
-    const Vector2 &a = tube.points[i], &b = tube.points[i + 1];
-    const Vector2 normal = left_normal(a, b);
-    const double ra = tube.radius[i], rb = tube.radius[i + 1];
-    if (i > 0 && std::abs(turn(previous, normal)) * ra > least_length) out.push_back(corner(a, ra, previous, normal));
-    out.push_back({a + ra * normal, a - ra * normal, b - rb * normal, b + rb * normal});
-    previous = normal;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Edge& edge = edges[i];
+    Polyline piece{edge.start + edge.start_radius * edge.normal(1.0)};
+    if (i > 0) piece.push_back(edge.start);
+    piece.push_back(edge.start + edge.start_radius * edge.normal(-1.0));
+    piece.push_back(edge.end() + edge.end_radius * edge.normal(-1.0));
+    if (i + 1 < edges.size()) piece.push_back(edge.end());
+    piece.push_back(edge.end() + edge.end_radius * edge.normal(1.0));
+    out.push_back(piece);
+    if (i == 0) continue;
+    for (const double sign : {1.0, -1.0}) {
+      if (const Polyline part = sector(edges[i - 1], edge, sign); !part.empty()) out.push_back(part);
+    }
   }
   return out;
 }
 
 std::vector<Polyline> tube_outline(const Tube& tube) {
+  const std::vector<Edge> edges = edges_of(tube);
   std::vector<Polyline> out;
-  for (const double sign : {1.0, -1.0}) append_visible(tube, side(tube, sign), out);
+  if (edges.empty()) return out;
+  for (const double sign : {1.0, -1.0}) append_visible(edges, side(edges, sign), out);
   return out;
 }
 

@@ -21,8 +21,8 @@ Tube refine(const Tube& tube);
 /// Polygons of one orientation whose union is the area of the tube.
 std::vector<Polyline> tube_area(const Tube& tube);
 
-/// The visible outline p ± R n on both sides. What lies inside another part of the tube, as on the inner side of a
-/// bend sharper than R, is cut off.
+/// The visible outline on both sides, which is the envelope of the discs. What lies inside another part of the tube, as
+/// on the inner side of a bend sharper than the radius, is cut off.
 std::vector<Polyline> tube_outline(const Tube& tube);
 
 }  // namespace bowstring
