@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct CommonOptions {
 struct SolveOptions {
   std::string file;
   std::vector<std::string> set;    ///< "path=value"
-  std::string out;                 ///< result document, "" for none
+  std::optional<std::string> out;  ///< result document
   std::vector<std::string> write;  ///< "writer=file"
   bool json = false;
 };

@@ -19,8 +19,9 @@ const char* manifold_text(Manifold manifold) {
   return "rotation (SO3)";
 }
 
-const char* extension_text(Extension extension) {
-  switch (extension) {
+const char* extension_text(const CurveView& curve) {
+  if (curve.rigid) return "rigid: no unknowns";
+  switch (curve.extension) {
     case Extension::sliding: return "length slides through the sheath: one unknown L";
     case Extension::fixed: return "every edge keeps its length";
     case Extension::stretching: break;
@@ -32,7 +33,7 @@ void explain_curve(const Curve& curve) {
   std::printf("%s '%s': %d nodes, %.6g mm, ends %s and %s; %s\n",
               curve.view.kind == CurveKind::wire ? "wire" : "vessel", curve.name.c_str(), curve.view.nodes,
               curve.arc.back(), end_type_name(curve.end_type[0]), end_type_name(curve.end_type[1]),
-              extension_text(curve.view.extension));
+              extension_text(curve.view));
   std::printf("  kinematics %s%s\n", curve.kinematics_name.c_str(),
               curve.needs.material_frames ? (", with material frames because " + curve.needs.reason).c_str() : "");
   for (const FieldDeclaration& field : curve.declaration.fields) {

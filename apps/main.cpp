@@ -1,3 +1,5 @@
+#include <csignal>
+
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.hpp"
@@ -5,6 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace bowstring::apps;
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves is an error of writing, not the end
   CLI::App app{"Bowstring: elastic wires in elastic vessels, coupled by unilateral contact"};
   app.set_version_flag("--version", std::string("bowstring ") + bowstring::bowstring_version);
   app.require_subcommand(1);

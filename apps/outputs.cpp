@@ -18,26 +18,38 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Why a new file cannot be put there; empty where it can.
+/// Why a new file cannot be put there; empty where it can. Devices and pipes are never replaced.
 std::string obstacle(const std::string& file) {
   std::error_code ignored;
-  if (fs::is_directory(file, ignored)) return std::strerror(EISDIR);
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) return "it is no regular file";
   fs::path folder = fs::path(file).parent_path();
   if (folder.empty()) folder = ".";
   return ::access(folder.c_str(), W_OK | X_OK) == 0 ? "" : std::strerror(errno);
 }
 
-bool same_place(const std::string& a, const std::string& b) {
+/// One file by two names, through links or not.
+bool same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;
-  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored) || fs::equivalent(a, b, ignored);
+}
+
+/// Where a symbolic link leads, so that the link stays.
+std::string behind_links(const std::string& file) {
+  std::error_code ignored;
+  return fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored).string() : file;
 }
 
 }  // namespace
 
-int Outputs::prepare(const std::string& composition, const std::string& out, const std::vector<std::string>& write,
+int Outputs::prepare(const std::optional<std::string>& out, const std::vector<std::string>& write,
                      Registry& registry) {
   int code = exit_converged;
-  if (!out.empty()) targets_.push_back({"--out", out, {}});
+  if (out && out->empty()) {
+    complain("--out: found no file; expected for instance --out result.json");
+    code = exit_wrong_input;
+  } else if (out) {
+    targets_.push_back({"--out", behind_links(*out), {}});
+  }
   for (const std::string& text : write) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
@@ -45,7 +57,7 @@ int Outputs::prepare(const std::string& composition, const std::string& out, con
       code = exit_wrong_input;
       continue;
     }
-    Target target{"--write " + text, text.substr(equals + 1), {}};
+    Target target{"--write " + text, behind_links(text.substr(equals + 1)), {}};
     target.writer.kind = Kind::writer;
     target.writer.name = text.substr(0, equals);
     Status status;
@@ -58,10 +70,10 @@ int Outputs::prepare(const std::string& composition, const std::string& out, con
     target.writer.parameters = default_parameters(*target.writer.descriptor);
     targets_.push_back(std::move(target));
   }
-  return code != exit_converged ? code : check_places(composition);
+  return code != exit_converged ? code : check_places();
 }
 
-int Outputs::check_places(const std::string& composition) const {
+int Outputs::check_places() const {
   int code = exit_converged;
   const auto refuse = [&](const Target& target, const std::string& why) {
     complain(target.label + ": " + why);
@@ -71,12 +83,22 @@ int Outputs::check_places(const std::string& composition) const {
     const Target& target = targets_[i];
     const std::string why = obstacle(target.file);
     if (!why.empty()) refuse(target, "cannot write '" + target.file + "': " + why);
-    if (same_place(target.file, composition)) {
-      refuse(target, "'" + target.file + "' is the composition itself; expected another file");
-    }
     for (std::size_t j = 0; j < i; ++j) {
-      if (!same_place(target.file, targets_[j].file)) continue;
+      if (!same_file(target.file, targets_[j].file)) continue;
       refuse(target, "'" + target.file + "' is written by " + targets_[j].label + " too; expected one file each");
+    }
+  }
+  return code;
+}
+
+int Outputs::spare(const std::vector<std::string>& input_files) const {
+  int code = exit_converged;
+  for (const Target& target : targets_) {
+    for (const std::string& input : input_files) {
+      if (!same_file(target.file, input)) continue;
+      complain(target.label + ": '" + target.file + "' is what this composition reads; expected another file");
+      code = exit_wrong_input;
+      break;
     }
   }
   return code;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +11,12 @@ namespace bowstring::apps {
 /// Where results go: `--out FILE` and every `--write WRITER=FILE`. All are written, or none is.
 class Outputs {
  public:
-  /// Finds the writers and looks at the places before anything is solved: what cannot be written, stands there twice,
-  /// or is the composition itself is reported on stderr. Returns an exit code.
-  int prepare(const std::string& composition, const std::string& out, const std::vector<std::string>& write,
-              Registry& registry);
+  /// Finds the writers and looks at the places before anything is solved: what cannot be written, or stands there
+  /// twice, is reported on stderr. Returns an exit code.
+  int prepare(const std::optional<std::string>& out, const std::vector<std::string>& write, Registry& registry);
+
+  /// The same for places where an input stands. Returns an exit code.
+  int spare(const std::vector<std::string>& input_files) const;
 
   /// Writes everything beside its place, then renames. Returns an exit code: that of a place which cannot be written
   /// any more, or of a writer that fails, both reported on stderr.
@@ -26,7 +29,7 @@ class Outputs {
     ComponentChoice writer;  ///< without descriptor: the document itself
   };
 
-  int check_places(const std::string& composition) const;
+  int check_places() const;
 
   std::vector<Target> targets_;
 };

@@ -84,13 +84,12 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
   if (!parse_overrides(options.set, request.overrides)) return exit_wrong_input;
   PluginHost host = make_host(common, options.file);
   Outputs outputs;
-  if (const int code = outputs.prepare(options.file, options.out, options.write, host); code != exit_converged) {
-    return code;
-  }
+  if (const int code = outputs.prepare(options.out, options.write, host); code != exit_converged) return code;
 
   Refusal refusal;
   const std::unique_ptr<Session> session = prepare(request, host, refusal);
   if (session == nullptr) return report(refusal);
+  if (const int code = outputs.spare(session->composition.input_files); code != exit_converged) return code;
 
   std::signal(SIGINT, on_interrupt);
   Progress progress;
@@ -103,13 +102,18 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
     complain(status.text);
   }
   const std::string document = result_document(*session, solution, readings, host);
+  const int written = outputs.write(document);  // before anything is printed: a pipe may be closed by now
   if (options.json) {
     std::fwrite(document.data(), 1, document.size(), stdout);
   } else {
     print_table(*session, solution, readings);
   }
   for (const std::string& warning : solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  if (const int code = outputs.write(document); code != exit_converged) return code;
+  if (written != exit_converged) return written;
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    complain("stdout cannot be written");
+    return exit_fell_short;
+  }
   return solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
 }
 

@@ -187,7 +187,10 @@ void conclude(const CertificateTable& thresholds, Claim claim, const std::string
     switch (claim) {
       case Claim::optimal:
       case Claim::stalled: out.verdict = Verdict::stalled; break;
-      case Claim::infeasible: out.verdict = Verdict::infeasible; break;
+      case Claim::infeasible:
+        // The rows hold: the solver was stuck elsewhere, and the figures say so.
+        out.verdict = out.penetration <= thresholds.penetration ? Verdict::stalled : Verdict::infeasible;
+        break;
       case Claim::diverged: out.verdict = Verdict::diverged; break;
       case Claim::failed: out.verdict = Verdict::failed; break;
     }

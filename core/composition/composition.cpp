@@ -59,6 +59,28 @@ Composition read_composition(const Node& root, Reading& reading) {
   return composition;
 }
 
+void add_paths(const ParameterSet& parameters, std::vector<std::string>& out) {
+  for (const ParameterValue& value : parameters.values) {
+    if (value.type == ParameterType::path && !value.text.empty()) out.push_back(value.text);
+    for (const ParameterSet& item : value.items) add_paths(item, out);
+  }
+}
+
+/// Files that parameters of any plugin name.
+std::vector<std::string> data_files(const Composition& composition) {
+  std::vector<std::string> out;
+  for (const VesselTable& vessel : composition.vessels) {
+    add_paths(vessel.geometry.parameters, out);
+    add_paths(vessel.kinematics.parameters, out);
+  }
+  for (const WireTable& wire : composition.wires) add_paths(wire.kinematics.parameters, out);
+  for (const EnergyTable& energy : composition.energies) add_paths(energy.component.parameters, out);
+  for (const ConstraintTable& constraint : composition.constraints) add_paths(constraint.component.parameters, out);
+  add_paths(composition.enforcement.parameters, out);
+  add_paths(composition.solver.parameters, out);
+  return out;
+}
+
 }  // namespace
 
 CompositionOutcome load_composition(const CompositionRequest& request, Registry& registry) {
@@ -69,6 +91,8 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
     Reading reading{registry, report, outcome.plugin_failure};
     Composition composition = read_composition(sources->root, reading);
     composition.file = request.file;
+    composition.input_files = sources->files;
+    for (std::string& file : data_files(composition)) composition.input_files.push_back(std::move(file));
     if (report.empty() && outcome.plugin_failure.ok()) {
       composition.resolved_json = resolved_json(composition, sources->plugin_path);
       composition.without_effect = without_effect(sources->root, composition);

@@ -86,6 +86,7 @@ struct Composition {
   int schema = 1;
   std::string title;
   std::string file;
+  std::vector<std::string> input_files;  ///< all that the user has given: the file, its bases, data of plugins; absolute
   int dimension = 3;
   std::vector<VesselTable> vessels;
   std::vector<WireTable> wires;

@@ -11,10 +11,16 @@
 namespace bowstring {
 namespace {
 
+/// The steps of a path. A step may be written in quotes, as TOML writes keys.
 std::vector<std::string> split_at_dots(const std::string& path) {
   std::vector<std::string> steps(1);
+  char quote = '\0';
   for (const char letter : path) {
-    if (letter == '.') {
+    if (letter == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (letter == '"' || letter == '\'')) {
+      quote = letter;
+    } else if (quote == '\0' && letter == '.') {
       steps.emplace_back();
     } else {
       steps.back() += letter;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/composition/keys.hpp"
+#include "core/composition/nearest.hpp"
 
 namespace bowstring {
 namespace {
@@ -24,10 +25,10 @@ class ProfileReader {
 
   bool read(const Node& node) {
     const bool keys_known =
-        check_keys(node, subject_, {"table", "segments", "column", "measured-from"}, "remove it", report_);
+        check_keys(node, subject_, {"table", "segments", "column", "unit", "measured-from"}, "remove it", report_);
     const Entry* form = the_form(node, keys_known);
     if (form == nullptr) return false;
-    const bool form_good = read_form(*form);
+    const bool form_good = read_form(*form) && read_unit(node, *form);
     const bool origin_good = read_origin(node, form->key == "table");
     return keys_known && form_good && origin_good;
   }
@@ -124,6 +125,28 @@ class ProfileReader {
     return fail(node, subject + " is in " + unit(number->alternative) + ", an earlier one in " +
                           unit(out_.unit_alternative),
                 "one kind of unit in a profile", "write all values in " + unit(out_.unit_alternative));
+  }
+
+  /// A column's numbers carry no unit: where units mean different things, the user says which it is.
+  bool read_unit(const Node& node, const Entry& form) {
+    const Entry* unit = node.find("unit");
+    const std::string expected = "one of: " + comma_separated(rules_.units);
+    if (form.key != "column") {
+      return unit == nullptr || fail(unit->value, "'unit' of " + subject_ + " without a 'column'",
+                                     "units in the values themselves", "remove it");
+    }
+    if (unit == nullptr) {
+      return rules_.units.size() == 1 || fail(form.value, "'column' of " + subject_ + " without a unit", expected,
+                                              "write { column = \"" + form.value.text + "\", unit = \"" +
+                                                  rules_.units.front() + "\" }");
+    }
+    for (std::size_t i = 0; i < rules_.units.size(); ++i) {
+      if (!unit->value.is_text() || unit->value.text != rules_.units[i]) continue;
+      out_.unit_alternative = static_cast<int>(i);
+      return true;
+    }
+    return fail(unit->value, "'unit' of " + subject_ + " is " + description(unit->value), expected,
+                "write the unit that the column's numbers are in");
   }
 
   bool read_origin(const Node& node, bool allowed) {

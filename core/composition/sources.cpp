@@ -90,12 +90,14 @@ class ChainReader {
   std::optional<SourceTree> compose(Node root) {
     check_schema(root);
     SourceTree result;
+    result.files.push_back(chain_.back().canonical.string());
     read_plugin_path(root, result.plugin_path);
     if (const Entry* base = root.find("base")) {
       std::optional<SourceTree> below = read_base(base->value);
       if (!below) return std::nullopt;
       result.root = std::move(below->root);
       append(result.plugin_path, below->plugin_path);
+      append(result.files, below->files);
     }
     result.root.position = root.position;
     lay_over(result.root, root);

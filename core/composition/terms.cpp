@@ -66,6 +66,10 @@ EnergyTable read_energy(const Node& table, const CurveNames& names, Reading& rea
   const std::string owner = "energy '" + energy.label + "'";
   if (!check_is_table(table, owner, "write it under [[energy]]", reading.report)) return energy;
   check_name(table, owner, reading.report);
+  if (energy.label == "total") {
+    reading.report.error(table.find("name")->value.position, "'name' of " + owner + " is 'total'",
+                         "a name that results do not use for the sum of all energies", "choose another name");
+  }
   if (const Entry* on = table.find("on")) {
     check_reference(on->value, "'on' of " + owner, "curve", names.all(), names, reading.report);
   } else {

@@ -399,6 +399,11 @@ std::vector<double> chord_parameters(const std::vector<double>& points, int dime
 
 Status fit_spline(const std::vector<double>& parameter, const std::vector<double>& points, int dimension,
                   int degree, double distance, SplineFit& out) {
+  if (parameter.size() <= static_cast<std::size_t>(degree)) {
+    return Status::failure(Code::invalid_input, "a spline of degree " + std::to_string(degree) + " through " +
+                                                    std::to_string(parameter.size()) + " points; expected at least " +
+                                                    std::to_string(degree + 1));
+  }
   const Data data{parameter, as_matrix(points, dimension), degree};
   const std::vector<std::size_t> inner =
       distance > 0.0 ? smoothing_knots(data, distance) : interpolation_knots(data);

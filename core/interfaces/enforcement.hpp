@@ -10,7 +10,7 @@ class Enforcement {
  public:
   virtual ~Enforcement() = default;
   /// What the inner solver will be asked to take.
-  virtual ProblemSummary remaining(const ProblemSummary& problem) const = 0;
+  virtual Status remaining(const ProblemSummary& problem, ProblemSummary& out) const noexcept = 0;
   virtual Status solve(Problem& problem, Solver& solver, Span<const double> start, const SolverContext& context,
                        SolverResult& out) noexcept = 0;
 };

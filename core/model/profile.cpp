@@ -15,6 +15,11 @@ std::string list_of(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& names) {
+  const auto nearest = nearest_names(word, names);
+  return nearest.empty() ? "" : "; did you mean '" + nearest.front() + "'?";
+}
+
 /// Arc coordinate along the profile's own axis.
 double profile_arc(const Profile& profile, double arc, double length) {
   return profile.measured_from == Profile::Origin::tip ? length - arc : arc;
@@ -31,6 +36,14 @@ Status sample_segments(const Profile& profile, const Curve& curve, const std::ve
       return Status::failure(Code::invalid_input, "a profile by segments without a value for segment '" + label +
                                                       "' of '" + curve.name + "'; expected one for each of its labels");
     }
+  }
+  for (const std::string& segment : profile.segment) {
+    if (std::find(curve.label.begin(), curve.label.end(), segment) != curve.label.end()) continue;
+    std::vector<std::string> labels = curve.label;
+    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    return Status::failure(Code::invalid_input, "a value for segment '" + segment + "', which the geometry of '" +
+                                                    curve.name + "' does not label; expected one of: " + list_of(labels) +
+                                                    did_you_mean(segment, labels));
   }
   for (const double s : arc) {
     const std::string& label = curve.label[nearest_index(curve.arc, s)];
@@ -49,11 +62,9 @@ Status sample_column(const Profile& profile, const Curve& curve, const std::vect
     for (const double s : arc) out.push_back(interpolate_linearly(curve.arc, data.value, s));
     return {};
   }
-  std::string text = "a profile from column '" + profile.column + "', which the geometry of '" + curve.name +
+  const std::string text = "a profile from column '" + profile.column + "', which the geometry of '" + curve.name +
                      "' does not have; expected one of: " + list_of(names);
-  const auto nearest = nearest_names(profile.column, names);
-  if (!nearest.empty()) text += "; did you mean '" + nearest.front() + "'?";
-  return Status::failure(Code::invalid_input, text);
+  return Status::failure(Code::invalid_input, text + did_you_mean(profile.column, names));
 }
 
 }  // namespace

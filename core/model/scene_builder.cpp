@@ -392,6 +392,9 @@ void Builder::add_wire(const WireTable& table) {
   const Status status = sample_profile(table.radius.profile, *curve, curve->arc, radius);
   if (!status.ok()) {
     error(table.radius.position, status.text, "", "");
+  } else if (held && table.radius.profile.form != Profile::Form::constant) {
+    error(table.radius.position, "'radius' varies along '" + table.name + "', whose length slides",
+          "one value along a sliding wire", "give a value, or let the wire end inside the vessel");
   } else {
     curve->radius = std::move(radius);
     if (is_constrained({table.name, table.vessel})) {

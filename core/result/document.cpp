@@ -144,8 +144,8 @@ Json quantities(const Quantities& q) {
           {"arc_to_chord", optional(q.arc_to_chord)},
           {"contact_count", q.contact_count},
           {"contact_force_N", q.contact_force},
-          {"line_load_peak_N_per_mm", q.line_load_peak},
-          {"line_load_integral_N", q.line_load_integral}};
+          {"line_load_peak_N_per_mm", optional(q.line_load_peak)},
+          {"line_load_integral_N", optional(q.line_load_integral)}};
 }
 
 Json curve(const Curve& curve, const CurveRecord& record) {

@@ -22,12 +22,25 @@ int station_node(const Curve& curve, int station) {
   return half ? station : station + 1;
 }
 
+/// Unit vector about which a curve in space turns at a node: from its edge before, or a held tangent, to the one after.
+Vector3 binormal(const Curve& curve, const std::vector<double>& points, int node) {
+  const int last = curve.view.nodes - 1;
+  const auto edge = [&](int i) {
+    return Vector3::load(points.data() + at(3 * (i + 1))) - Vector3::load(points.data() + at(3 * i));
+  };
+  const Vector3 before = node > 0 ? edge(node - 1) : Vector3::load(curve.view.end[0].tangent);
+  const Vector3 after = node < last ? edge(node) : Vector3::load(curve.view.end[1].tangent);
+  const Vector3 normal = cross(before, after);
+  const double length = norm(normal);
+  return length > 0.0 ? normal / length : normal;
+}
+
 void read_strain(Session& session, const Solution& solution, const Curve& curve, CurveRecord& out) {
   const int n = curve.view.nodes;
   const SiteDeclaration* site = curve.site(Site::station);
   const double* y = session.assembly->table(curve.view.index, Site::station);
   out.curvature.assign(at(n), 0.0);
-  if (site == nullptr || y == nullptr) return;
+  if (site == nullptr || y == nullptr || out.frames.empty()) return;
   std::vector<double> stress;
   if (!session.assembly->site_stress(solution.q, curve.view.index, Site::station, stress).ok()) return;
   const int components = site->values - (site->lengths_vary ? 2 : 0);
@@ -46,8 +59,13 @@ void read_strain(Session& session, const Solution& solution, const Curve& curve,
     if (frames) out.twist[at(node)] = zeta[0] / ds;
     if (!space) {
       out.moment[at(node)] = m[0];
-    } else {
-      for (int k = 0; k < components; ++k) out.moment[at(3 * node + (frames ? k : k + 1))] = m[k];
+    } else if (frames) {
+      std::copy_n(m, 3, out.moment.begin() + 3 * node);
+    } else if (squared > 0.0) {
+      // The station's basis is the kinematics' own; an isotropic moment lies along the binormal in any.
+      const Vector3 moment = (m[0] * zeta[0] + m[1] * zeta[1]) / std::sqrt(squared) * binormal(curve, out.points, node);
+      const lie::Rotation frame = lie::Rotation::load(out.frames.data() + at(4 * node));
+      (frame.inverse() * moment).store(out.moment.data() + 3 * node);
     }
   }
 }
@@ -87,8 +105,8 @@ CurveRecord read_curve(Session& session, const Solution& solution, const Curve& 
   const double* p = session.assembly->table(curve.view.index, Site::node);
   out.points.assign(p, p + curve.view.nodes * curve.view.dimension);
   out.arc = polyline_arc(out.points, curve.view.dimension);
-  read_strain(session, solution, curve, out);
   read_frames(curve, {solution.q.data() + curve.coordinate_begin, at(curve.coordinates)}, out);
+  read_strain(session, solution, curve, out);
   read_internal_force(session, solution, curve, out);
   return out;
 }
@@ -222,16 +240,20 @@ void read_wires(Session& session, const Solution& solution, const Readings& read
     length += record.arc.back();
     chord += std::sqrt(squared);
     std::vector<double> tension;
-    if (!session.assembly->site_stress(solution.q, curve->view.index, Site::length, tension).ok() || tension.empty()) continue;
+    Status status = session.assembly->site_stress(solution.q, curve->view.index, Site::length, tension);
+    if (!status.ok() || tension.empty()) continue;  // only a wire that slides has its tension as an energy
+    double peak = 0.0, integral = 0.0;
     for (const ContactRecord& contact : readings.contacts) {
       if (contact.wire != curve->view.index || contact.force <= touching_force) continue;
       const int node = static_cast<int>(std::lround(contact.wire_coordinate));
       const double before = node > 0 ? record.arc[at(node)] - record.arc[at(node - 1)] : 0.0;
       const double after = node + 1 < curve->view.nodes ? record.arc[at(node + 1)] - record.arc[at(node)] : 0.0;
       const double line_load = std::fabs(tension[0] * record.curvature[at(node)]);
-      out.line_load_peak = std::max(out.line_load_peak, line_load);
-      out.line_load_integral += line_load * 0.5 * (before + after);
+      peak = std::max(peak, line_load);
+      integral += line_load * 0.5 * (before + after);
     }
+    out.line_load_peak = std::max(out.line_load_peak.value_or(0.0), peak);
+    out.line_load_integral = out.line_load_integral.value_or(0.0) + integral;
   }
   if (!any) return;
   out.wire_length = length;

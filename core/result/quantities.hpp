@@ -42,8 +42,8 @@ struct Quantities {
   std::optional<double> wire_length, vessel_length_change, arc_to_chord;
   int contact_count = 0;
   double contact_force = 0.0;        ///< N, sum
-  double line_load_peak = 0.0;       ///< N/mm, Tκ over nodes in contact (preprint eq. (20))
-  double line_load_integral = 0.0;   ///< N
+  std::optional<double> line_load_peak;      ///< N/mm, Tκ over nodes in contact (preprint eq. (20))
+  std::optional<double> line_load_integral;  ///< N
 };
 
 struct Readings {

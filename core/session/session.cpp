@@ -25,8 +25,13 @@ void refuse(const Status& status, const ComponentChoice& choice, Refusal& refusa
 
 /// Asks the solver whether it can take what the enforcement leaves of the problem.
 void check_pair(const Session& session, Refusal& refusal) {
-  const ProblemSummary remaining = session.enforcement->remaining(session.assembly->summary());
-  Status status = session.solver->can(remaining);
+  ProblemSummary remaining;
+  Status status = session.enforcement->remaining(session.assembly->summary(), remaining);
+  if (!status.ok()) {
+    status.text = "enforcement '" + session.composition.enforcement.name + "': " + status.text;
+    return refuse(status, session.composition.enforcement, refusal);
+  }
+  status = session.solver->can(remaining);
   if (status.ok()) return;
   std::string groups;
   for (const RowGroup& group : remaining.row_groups) groups += (groups.empty() ? "" : ", ") + group.text;

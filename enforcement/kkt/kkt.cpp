@@ -10,7 +10,9 @@ class Kkt final : public Enforcement {
  public:
   explicit Kkt(const ParameterSet&) {}
 
-  ProblemSummary remaining(const ProblemSummary& problem) const override { return problem; }
+  Status remaining(const ProblemSummary& problem, ProblemSummary& out) const noexcept override {
+    return guard([&] { out = problem; });
+  }
 
   Status solve(Problem& problem, Solver& solver, Span<const double> start, const SolverContext& context,
                SolverResult& out) noexcept override {

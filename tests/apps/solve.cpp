@@ -1,11 +1,15 @@
 #include <doctest/doctest.h>
 
+#include <sys/stat.h>
+
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "core/lie/so3.hpp"
 #include "tests/apps/command.hpp"
 #include "tests/plugins/plugin_folders.hpp"
 
@@ -192,15 +196,75 @@ TEST_CASE("files that cannot be written are the caller's mistake") {
 
 TEST_CASE("no output may destroy the composition, or another output") {
   const TemporaryFolder folder;
-  folder.write("scene.toml", testing::shipped_scene("planar-iliac-smooth.toml"));
+  const std::string base = testing::shipped_scene("planar-iliac.toml");
+  const std::string variant = testing::shipped_scene("planar-iliac-smooth.toml");
+  folder.write("planar-iliac.toml", base);
+  folder.write("scene.toml", variant);
+  folder.write("points.csv", "x_mm,y_mm\n0,0\n10,0\n20,1\n30,3\n40,6\n");
+  const std::string csv = "vessel.iliac.geometry={ type = 'csv', file = 'points.csv' }";
   CommandResult result = bowstring_command(folder.path(), {"solve", "scene.toml", "--out", "./scene.toml"});
   CHECK(result.exit_code == 2);
-  CHECK(result.err == "error: --out: './scene.toml' is the composition itself; expected another file\n");
+  CHECK(result.err == "error: --out: './scene.toml' is what this composition reads; expected another file\n");
+  for (const char* file : {"planar-iliac.toml", "points.csv"}) {
+    result = bowstring_command(folder.path(), {"solve", "scene.toml", "--set", csv, "--write", "csv=" + std::string(file)});
+    CHECK(result.exit_code == 2);
+    CHECK(contains(result.err, "' is what this composition reads; expected another file\n"));
+  }
   result = bowstring_command(folder.path(), {"solve", "scene.toml", "--out", "result", "--write", "csv=result"});
   CHECK(result.exit_code == 2);
   CHECK(result.err == "error: --write csv=result: 'result' is written by --out too; expected one file each\n");
-  CHECK(read_text(folder.path() + "/scene.toml") == testing::shipped_scene("planar-iliac-smooth.toml"));
-  CHECK(entries(folder.path()) == std::vector<std::string>{"scene.toml"});
+  CHECK(read_text(folder.path() + "/scene.toml") == variant);
+  CHECK(read_text(folder.path() + "/planar-iliac.toml") == base);
+  CHECK(entries(folder.path()) == std::vector<std::string>{"planar-iliac.toml", "points.csv", "scene.toml"});
+}
+
+TEST_CASE("devices and pipes are never replaced, and links stay links") {
+  const TemporaryFolder folder;
+  REQUIRE(::mkfifo((folder.path() + "/pipe").c_str(), 0600) == 0);
+  CommandResult result = bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--out", "pipe"});
+  CHECK(result.exit_code == 2);
+  CHECK(contains(result.err, "error: --out: cannot write 'pipe': it is no regular file\n"));
+  folder.write("target.json", "old");
+  std::filesystem::create_symlink("target.json", folder.path() + "/link.json");
+  result = bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--out", "link.json"});
+  CHECK(result.exit_code == 0);
+  CHECK(std::filesystem::is_symlink(folder.path() + "/link.json"));
+  CHECK(Json::parse(read_text(folder.path() + "/target.json"))["status"] == "converged");
+  CHECK(entries(folder.path()) == std::vector<std::string>{"link.json", "pipe", "target.json"});
+  result = bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--out", ""});
+  CHECK(result.exit_code == 2);
+  CHECK(result.err == "error: --out: found no file; expected for instance --out result.json\n");
+}
+
+TEST_CASE("moments in space are those of the curvature, in the axes of the frames") {
+  for (const char* kinematics : {"edge-frames", "nodes"}) {
+    const TemporaryFolder folder;
+    const CommandResult result =
+        bowstring_command(folder.path(), {"solve", scene("tortuous-iliac.toml"), "--json", "--set",
+                                          std::string("wire.lunderquist.kinematics=") + kinematics});
+    REQUIRE(result.exit_code == 0);
+    const Json wire = Json::parse(result.out)["curves"][1];
+    REQUIRE(wire["kind"] == "wire");
+    int checked = 0;
+    for (std::size_t i = 1; i + 1 < wire["points"].size(); ++i) {
+      const auto point = [&](std::size_t node) { return wire["points"][node].get<std::vector<double>>(); };
+      const auto a = point(i - 1), b = point(i), c = point(i + 1);
+      Vector3 before, after;
+      for (int k = 0; k < 3; ++k) {
+        before[k] = b[std::size_t(k)] - a[std::size_t(k)];
+        after[k] = c[std::size_t(k)] - b[std::size_t(k)];
+      }
+      const auto frame = wire["frames"][i].get<std::vector<double>>();
+      const auto moment = wire["moment_N_mm"][i].get<std::vector<double>>();
+      const Vector3 global = lie::Rotation::load(frame.data()) * Vector3::load(moment.data());
+      if (norm(global) < 50.0) continue;
+      const Vector3 normal = cross(before, after);
+      CHECK(dot(global, normal) >= 0.9999 * norm(global) * norm(normal));
+      CHECK(norm(global) == doctest::Approx(4857.0 * wire["curvature_per_mm"][i].get<double>()).epsilon(1e-9));
+      ++checked;
+    }
+    CHECK(checked > 40);
+  }
 }
 
 TEST_CASE("two runs give the same bits") {

@@ -17,11 +17,11 @@ struct SolvedScene {
   Assembly& assembly() const { return *session->assembly; }
 };
 
-/// A tensioned wire that a wall holds in a bend: an S in the plane, part of a helix in space; rows with the solver's own window.
+/// A tensioned wire that a wall holds in a bend: an S in the plane, part of a helix in space.
 SmallScene contact_scene(int dimension, const char* vessel_kinematics = "edge-frames",
                          const char* wire_kinematics = "edge-frames");
 
-/// The same with the tolerance of the solver.
+/// Its text with the solver's own window and these keys of the solver.
 std::string contact_text(const SmallScene& scene, const std::string& solver_keys = "tolerance = 1e-9");
 
 SolvedScene solved(std::unique_ptr<Session> session);

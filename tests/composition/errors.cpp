@@ -270,7 +270,7 @@ TEST_CASE("profiles") {
     return all[0].substr(("--set " + path + "=" + value + ": ").size());
   };
   CHECK(error("wire.w.radius", "{ colum = \"r\" }") ==
-        "unknown key 'colum' in 'radius' of wire 'w'; expected one of: table, segments, column, measured-from; did you "
+        "unknown key 'colum' in 'radius' of wire 'w'; expected one of: table, segments, column, unit, measured-from; did you "
         "mean 'column'?");
   CHECK(error("wire.w.radius", "{}") ==
         "'radius' of wire 'w' has none of 'table', 'segments' and 'column'; expected exactly one of them; write a "
@@ -297,6 +297,14 @@ TEST_CASE("profiles") {
   CHECK(error("energy.anchoring.stiffness", "{ table = [[0, \"1 N/mm^2\"]], measured-from = \"tip\" }") ==
         "'measured-from' in 'stiffness' of energy 'anchoring', which acts on a vessel; expected it on a wire only; "
         "remove it: a vessel's arc length counts from its first end");
+  CHECK(error("energy.anchoring.stiffness", "{ column = \"k\" }") ==
+        "'column' of 'stiffness' of energy 'anchoring' without a unit; expected one of: N/mm^2, N/mm; write { column = "
+        "\"k\", unit = \"N/mm^2\" }");
+  CHECK(error("energy.anchoring.stiffness", "{ column = \"k\", unit = \"N/m\" }") ==
+        "'unit' of 'stiffness' of energy 'anchoring' is text \"N/m\"; expected one of: N/mm^2, N/mm; write the unit that "
+        "the column's numbers are in");
+  CHECK(error("wire.w.radius", "{ table = [[0, 1]], unit = \"mm\" }") ==
+        "'unit' of 'radius' of wire 'w' without a 'column'; expected units in the values themselves; remove it");
   CHECK(error("energy.anchoring.stiffness", "{ segments = { a = \"1 N/mm\", b = \"1 N/mm^2\" } }") ==
         "segment 'b' of 'stiffness' of energy 'anchoring' is in N/mm^2, an earlier one in N/mm; expected one kind of "
         "unit in a profile; write all values in N/mm");

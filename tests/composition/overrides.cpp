@@ -64,6 +64,18 @@ TEST_CASE("a plugin's name alone opens into a table, and ends are first and last
   CHECK(scene.wires[0].end[1].tangent == std::vector<double>{1.0, 0.0});
 }
 
+TEST_CASE("a step may be written in quotes, as TOML writes keys") {
+  Workbench bench;
+  std::string text(test::small_scene);
+  for (std::size_t at = text.find("\"w\""); at != std::string::npos; at = text.find("\"w\"")) {
+    text.replace(at, 3, "\"w 018\"");
+  }
+  const Composition scene = bench.loaded(text, {{"wire.\"w 018\".radius", "0.5"}, {"'solver'.tolerance", "1e-9"}});
+  CHECK(scene.wires[0].name == "w 018");
+  CHECK(scene.wires[0].radius.profile.constant == 0.5);
+  CHECK(scene.solver.parameters.scalar("tolerance") == 1e-9);
+}
+
 TEST_CASE("later overrides win") {
   Workbench bench;
   const Composition scene = bench.loaded(test::small_scene, {{"wire.w.radius", "0.5"}, {"wire.w.radius", "0.6"}});

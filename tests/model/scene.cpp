@@ -24,15 +24,6 @@ std::string refusal_of(const std::string& text) {
   return refusal_text(refusal);
 }
 
-/// Fixed tangent numbers of a curve, all fields.
-int fixed(const Session& session, const std::string& curve) {
-  int out = 0;
-  for (const FieldDeclaration& field : session.scene->find(curve)->declaration.fields) {
-    for (const char flag : field.fixed) out += flag;
-  }
-  return out;
-}
-
 SmallScene with_ends(int dimension, const std::string& first, const std::string& last) {
   SmallScene scene;
   scene.dimension = dimension;
@@ -42,46 +33,9 @@ SmallScene with_ends(int dimension, const std::string& first, const std::string&
 
 }  // namespace
 
-TEST_CASE("ends hold what their names say, and nothing else is fixed") {
-  // Position: dimension numbers per held node. A clamp holds its tangent too: one angle, or a direction's two numbers.
-  CHECK(fixed(*session_of(with_ends(2, "pinned", "pinned")), "wire") == 4);
-  CHECK(fixed(*session_of(with_ends(2, "clamped", "pinned")), "wire") == 5);
-  CHECK(fixed(*session_of(with_ends(2, "pinned", "free")), "wire") == 2);
-  CHECK(fixed(*session_of(with_ends(3, "pinned", "pinned")), "wire") == 6);
-  CHECK(fixed(*session_of(with_ends(3, "clamped", "clamped")), "wire") == 10);
-  CHECK(fixed(*session_of(with_ends(3, "clamped", "free")), "wire") == 5);
-  // A held edge holds both nodes and its own orientation.
-  CHECK(fixed(*session_of(with_ends(2, "held-edge", "pinned")), "wire") == 2 * 3 + 1);
-  SmallScene nodes = with_ends(2, "held-edge", "pinned");
-  nodes.wire_kinematics = "nodes";
-  CHECK(fixed(*session_of(nodes), "wire") == 6);
-}
-
 TEST_CASE("a wire held at both ends slides; with a free end its length is fixed") {
   CHECK(session_of(with_ends(2, "pinned", "pinned"))->scene->find("wire")->view.extension == Extension::sliding);
   CHECK(session_of(with_ends(2, "pinned", "free"))->scene->find("wire")->view.extension == Extension::fixed);
-}
-
-TEST_CASE("a wire starts on its vessel's centerline, whatever its mesh, ends on its ends") {
-  for (const int dimension : {2, 3}) {
-    for (const int nodes : {5, 8, 40}) {
-      SmallScene scene;
-      scene.dimension = dimension;
-      scene.wire_nodes = nodes;
-      const auto session = session_of(scene);
-      const Curve& wire = *session->scene->find("wire");
-      const Curve& vessel = *session->scene->find("vessel");
-      REQUIRE(wire.view.nodes == nodes);
-      for (int k = 0; k < dimension; ++k) {
-        CHECK(wire.start[at(k)] == vessel.reference[at(k)]);
-        CHECK(wire.start[at((nodes - 1) * dimension + k)] == vessel.reference[at(7 * dimension + k)]);
-      }
-      double longest = 0.0;
-      for (const double edge : wire.edge_length) longest = std::max(longest, edge);
-      CHECK(longest < 1.05 * wire.arc.back() / (nodes - 1));
-      CHECK(wire.radius == std::vector<double>(at(nodes), 0.4));
-    }
-  }
 }
 
 TEST_CASE("a rigid vessel has no unknowns and its walls stay") {
@@ -131,6 +85,10 @@ TEST_CASE("a profile along a sliding wire is refused with the reason") {
                           "{ table = [[\"0 mm\", \"65 N mm^2\"], [\"20 mm\", \"30 N mm^2\"]] }"))
             .find("'bending-stiffness' of energy 'wire-bending' varies along 'wire', whose length slides; expected one "
                   "value along a sliding wire") != std::string::npos);
+  CHECK(refusal_of(edited(SmallScene{}.text(), "radius = \"0.4 mm\"",
+                          "radius = { table = [[\"0 mm\", \"0.4 mm\"], [\"20 mm\", \"0.9 mm\"]] }"))
+            .find("'radius' varies along 'wire', whose length slides; expected one value along a sliding wire; give a "
+                  "value, or let the wire end inside the vessel") != std::string::npos);
 }
 
 TEST_CASE("two runs in one process give the same bits") {

@@ -185,7 +185,9 @@ TEST_CASE("solver and enforcement through the host") {
   const auto enforcement = create<Enforcement>(Kind::enforcement, "test-pass-on");
   ProblemSummary with_rows;
   with_rows.inequalities = 2;
-  const Status refusal = solver->can(enforcement->remaining(with_rows));
+  ProblemSummary remaining;
+  REQUIRE(enforcement->remaining(with_rows, remaining).ok());
+  const Status refusal = solver->can(remaining);
   CHECK(refusal.code == Code::unsupported);
   CHECK(refusal.text == "steepest descent takes neither rows nor bounds");
 
