@@ -10,11 +10,16 @@ namespace {
 
 const char* manifold_text(Manifold manifold) {
   switch (manifold) {
-    case Manifold::real: return "number";
-    case Manifold::vector: return "vector";
-    case Manifold::circle: return "angle (S1)";
-    case Manifold::direction: return "direction (S2)";
-    case Manifold::rotation: break;
+    case Manifold::real:
+      return "number";
+    case Manifold::vector:
+      return "vector";
+    case Manifold::circle:
+      return "angle (S1)";
+    case Manifold::direction:
+      return "direction (S2)";
+    case Manifold::rotation:
+      break;
   }
   return "rotation (SO3)";
 }
@@ -22,9 +27,12 @@ const char* manifold_text(Manifold manifold) {
 const char* extension_text(const CurveView& curve) {
   if (curve.rigid) return "rigid: no unknowns";
   switch (curve.extension) {
-    case Extension::sliding: return "length slides through the sheath: one unknown L";
-    case Extension::fixed: return "every edge keeps its length";
-    case Extension::stretching: break;
+    case Extension::sliding:
+      return "length slides through the sheath: one unknown L";
+    case Extension::fixed:
+      return "every edge keeps its length";
+    case Extension::stretching:
+      break;
   }
   return "every edge has its own length";
 }

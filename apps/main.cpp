@@ -13,7 +13,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   CommonOptions common;
   const auto plugin_path = [&](CLI::App* command) {
-    command->add_option("--plugin-path", common.plugin_path, "folder with plugins, searched before all others; repeatable")
+    command
+        ->add_option("--plugin-path", common.plugin_path, "folder with plugins, searched before all others; repeatable")
         ->allow_extra_args(false);
   };
   const auto overrides = [](CLI::App* command, std::vector<std::string>& set) {
@@ -26,7 +27,8 @@ int main(int argc, char** argv) {
   solve_command->add_option("FILE", solve_options.file, "composition (TOML)")->required();
   overrides(solve_command, solve_options.set);
   solve_command->add_option("--out", solve_options.out, "write the result document (JSON) to this file");
-  solve_command->add_option("--write", solve_options.write, "writer=file: also write the result in this format; repeatable")
+  solve_command
+      ->add_option("--write", solve_options.write, "writer=file: also write the result in this format; repeatable")
       ->allow_extra_args(false);
   solve_command->add_flag("--json", solve_options.json, "print the result document, and nothing else, on stdout");
   plugin_path(solve_command);

@@ -41,8 +41,7 @@ std::string behind_links(const std::string& file) {
 
 }  // namespace
 
-int Outputs::prepare(const std::optional<std::string>& out, const std::vector<std::string>& write,
-                     Registry& registry) {
+int Outputs::prepare(const std::optional<std::string>& out, const std::vector<std::string>& write, Registry& registry) {
   int code = exit_converged;
   if (out && out->empty()) {
     complain("--out: found no file; expected for instance --out result.json");

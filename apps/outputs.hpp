@@ -24,7 +24,7 @@ class Outputs {
 
  private:
   struct Target {
-    std::string label;       ///< as on the command line: "--out", "--write svg=picture.svg"
+    std::string label;  ///< as on the command line: "--out", "--write svg=picture.svg"
     std::string file;
     ComponentChoice writer;  ///< without descriptor: the document itself
   };

@@ -35,15 +35,24 @@ std::optional<Kind> parse_kind(const std::string& name) {
 
 const char* type_name(ParameterType type) {
   switch (type) {
-    case ParameterType::scalar: return "scalar";
-    case ParameterType::profile: return "profile";
-    case ParameterType::vector: return "vector";
-    case ParameterType::path: return "path";
-    case ParameterType::choice: return "choice";
-    case ParameterType::integer: return "integer";
-    case ParameterType::flag: return "flag";
-    case ParameterType::text: return "text";
-    case ParameterType::list: break;
+    case ParameterType::scalar:
+      return "scalar";
+    case ParameterType::profile:
+      return "profile";
+    case ParameterType::vector:
+      return "vector";
+    case ParameterType::path:
+      return "path";
+    case ParameterType::choice:
+      return "choice";
+    case ParameterType::integer:
+      return "integer";
+    case ParameterType::flag:
+      return "flag";
+    case ParameterType::text:
+      return "text";
+    case ParameterType::list:
+      break;
   }
   return "list";
 }
@@ -117,7 +126,10 @@ int list_plugins(const CommonOptions& common, const std::string& kind, bool json
     for (const std::string& name : host.names(k)) {
       const std::string description = host.description(k, name);
       if (json) {
-        out.push_back({{"kind", kind_name(k)}, {"name", name}, {"description", description}, {"file", host.origin(k, name).file}});
+        out.push_back({{"kind", kind_name(k)},
+                       {"name", name},
+                       {"description", description},
+                       {"file", host.origin(k, name).file}});
       } else {
         std::printf("%-12s %-20s %s\n", kind_name(k), name.c_str(), description.c_str());
       }

@@ -37,14 +37,14 @@ constexpr int window_in_length = 1;
 constexpr double rebind_margin = 0.2;  // of the window's half width
 
 struct Row {
-  int node = 0;                    // of the wire
+  int node = 0;  // of the wire
   contact::GapShape shape;
   contact::Window window;
-  contact::NodeRange nodes;        // of the vessel, that the window covers
-  double sigma = 0.0;              // closest point at the accepted state
-  contact::Stencil stencil;        // there
-  double offset[3] = {};           // wire node minus that point, at the accepted state
-  double tangent[3] = {};          // unit, of the vessel there
+  contact::NodeRange nodes;  // of the vessel, that the window covers
+  double sigma = 0.0;        // closest point at the accepted state
+  contact::Stencil stencil;  // there
+  double offset[3] = {};     // wire node minus that point, at the accepted state
+  double tangent[3] = {};    // unit, of the vessel there
   double clearance = 1.0;
 };
 
@@ -79,8 +79,9 @@ class NodeWiseContact final : public Constraint {
         throw StatusError(Code::invalid_input, "contact acts on a wire and a vessel, in that order");
       }
       if (scene.radius[1] == nullptr) {
-        throw StatusError(Code::invalid_input, "vessel '" + std::string(scene.on[1].name) +
-                                                   "' has no radius; give it one, or a geometry with a column radius_mm");
+        throw StatusError(Code::invalid_input,
+                          "vessel '" + std::string(scene.on[1].name) +
+                              "' has no radius; give it one, or a geometry with a column radius_mm");
       }
       wire_ = scene.on[0];
       vessel_ = scene.on[1];
@@ -247,7 +248,8 @@ class NodeWiseContact final : public Constraint {
       const EndCondition& end = wire_.end[e];
       const int first = e == 0 ? 0 : wire_.nodes - 1;
       const int second = e == 0 ? 1 : wire_.nodes - 2;
-      const bool wholly = std::all_of(end.position_held, end.position_held + dimension_, [](bool held) { return held; });
+      const bool wholly =
+          std::all_of(end.position_held, end.position_held + dimension_, [](bool held) { return held; });
       if (wholly && (node == first || (end.edge_held && node == second))) return true;
     }
     return false;
@@ -299,13 +301,15 @@ class NodeWiseContact final : public Constraint {
       if (depth > outside) outside = depth, outside_node = row.node;
     }
     if (spacing > clearance) {
-      out.warnings.push_back("contact of '" + std::string(wire_.name) + "' with '" + vessel_.name + "': rows are up to " +
-                             number(spacing) + " mm apart, farther than the smallest clearance (" + number(clearance) +
+      out.warnings.push_back("contact of '" + std::string(wire_.name) + "' with '" + vessel_.name +
+                             "': rows are up to " + number(spacing) +
+                             " mm apart, farther than the smallest clearance (" + number(clearance) +
                              " mm), so the wall may pass between them; use more wire nodes");
     }
     if (outside_node >= 0) {
-      out.warnings.push_back("wire '" + std::string(wire_.name) + "' starts outside of '" + vessel_.name + "' by up to " +
-                             number(outside) + " mm, at s = " + number(wire_.arc[outside_node]) + " mm");
+      out.warnings.push_back("wire '" + std::string(wire_.name) + "' starts outside of '" + vessel_.name +
+                             "' by up to " + number(outside) + " mm, at s = " + number(wire_.arc[outside_node]) +
+                             " mm");
     }
   }
 

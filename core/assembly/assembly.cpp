@@ -14,8 +14,8 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr double largest_shortening = 0.5;                // of an edge, in one step
-constexpr double largest_turn = 0.78539816339744830962;   // of a station, in one step
+constexpr double largest_shortening = 0.5;               // of an edge, in one step
+constexpr double largest_turn = 0.78539816339744830962;  // of a station, in one step
 
 Status named(Status status, const std::string& what) {
   if (!status.ok()) status.text = what + ": " + status.text;
@@ -27,8 +27,8 @@ Status check_rows(const std::vector<double>& numbers, const std::vector<int>& be
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     if (std::isfinite(numbers[k])) continue;
     const auto row = std::upper_bound(begin.begin(), begin.end(), static_cast<int>(k)) - begin.begin() - 1;
-    return Status::failure(Code::failed, std::string("a ") + what + " of row " + std::to_string(row) +
-                                             " is not a finite number");
+    return Status::failure(Code::failed,
+                           std::string("a ") + what + " of row " + std::to_string(row) + " is not a finite number");
   }
   return {};
 }
@@ -159,7 +159,8 @@ Status Assembly::update_rows(bool jacobian) {
   for (const SiteTable& table : tables_) {
     if (table.declaration->site == Site::closure) out = std::copy(table.y.begin(), table.y.end(), out);
   }
-  for (std::size_t c = 0; c < constraints_.size() && row_status_.ok(); ++c) row_status_ = update_constraint(c, jacobian);
+  for (std::size_t c = 0; c < constraints_.size() && row_status_.ok(); ++c)
+    row_status_ = update_constraint(c, jacobian);
   has_rows_ = true;
   has_row_jacobians_ = jacobian;
   return row_status_;

@@ -17,16 +17,16 @@ namespace bowstring {
 struct FieldEntry {
   Manifold manifold = Manifold::real;
   int dimension = 1;
-  int coordinate = 0;    ///< first number in q
-  int unknown = 0;       ///< first scene-wide tangent number
-  int block = -1;        ///< of the free unknowns, −1 where all are fixed
+  int coordinate = 0;         ///< first number in q
+  int unknown = 0;            ///< first scene-wide tangent number
+  int block = -1;             ///< of the free unknowns, −1 where all are fixed
   double arc_fraction = 0.0;  ///< place along its curve, 0…1
 };
 
 /// Where a group of rows comes from.
 struct RowOrigin {
-  int curve = -1;         ///< of closure rows
-  int constraint = -1;    ///< of constraint rows
+  int curve = -1;       ///< of closure rows
+  int constraint = -1;  ///< of constraint rows
   int first = 0, count = 0;
   std::string name;
 };
@@ -116,16 +116,16 @@ class Assembly final : public Problem, public PlaceTables {
 
   Scene& scene_;
   std::vector<FieldEntry> entries_;
-  std::vector<int> free_;                  // scene-wide tangent number → free unknown or −1
+  std::vector<int> free_;  // scene-wide tangent number → free unknown or −1
   int free_count_ = 0;
   BlockLayout blocks_;
   std::vector<SiteTable> tables_;
-  std::vector<int> table_of_;              // curve × site
+  std::vector<int> table_of_;  // curve × site
   std::vector<LawSlot> laws_;
   std::vector<ConstraintRows> constraints_;
   std::vector<RowOrigin> origins_;
   std::vector<double> row_lower_, row_upper_, lower_, upper_, scale_;
-  std::vector<int> closure_position_;      // of closure Jacobians, table after table
+  std::vector<int> closure_position_;  // of closure Jacobians, table after table
   std::vector<int> order_;
   HessianPattern hessian_pattern_;
   JacobianPattern jacobian_pattern_;

@@ -17,19 +17,20 @@ struct ConstraintRows {
   };
 
   int first_row = 0;
-  std::vector<Read> reads;                          ///< of all rows, in declaration order
-  std::vector<int> read_begin;                      ///< rows + 1
-  std::vector<double> jacobian, hessian;            ///< as the constraint writes them
-  std::vector<int> jacobian_begin, hessian_begin;   ///< rows + 1
-  std::vector<int> unknown, unknown_begin;          ///< per row: free unknowns that it reads, −1 where held
-  std::vector<int> jacobian_position;               ///< per entry of `unknown`
+  std::vector<Read> reads;                                    ///< of all rows, in declaration order
+  std::vector<int> read_begin;                                ///< rows + 1
+  std::vector<double> jacobian, hessian;                      ///< as the constraint writes them
+  std::vector<int> jacobian_begin, hessian_begin;             ///< rows + 1
+  std::vector<int> unknown, unknown_begin;                    ///< per row: free unknowns that it reads, −1 where held
+  std::vector<int> jacobian_position;                         ///< per entry of `unknown`
   std::vector<int> hessian_position, hessian_position_begin;  ///< per row: packed over its unknowns
-  bool identity = true;                             ///< every place of every row has B = I
+  bool identity = true;                                       ///< every place of every row has B = I
 
   int rows() const noexcept { return static_cast<int>(read_begin.size()) - 1; }
 
   void reserve_derivatives();
-  void locate(const BlockLayout& blocks, const HessianPattern& hessian_pattern, const JacobianPattern& jacobian_pattern);
+  void locate(const BlockLayout& blocks, const HessianPattern& hessian_pattern,
+              const JacobianPattern& jacobian_pattern);
 
   /// out += ∂r/∂y B.
   void add_jacobian(const std::vector<SiteTable>& tables, Span<double> out) const noexcept;

@@ -170,7 +170,8 @@ void EuclideanChart::pull_back_pair(const HessianPattern::Pair& pair, Span<doubl
       for (int j = 0; j < columns; ++j) {
         double sum = 0.0;
         for (int a = 0; a < n; ++a) {
-          sum += left ? curved.jacobian[a * n + i] * h[a * columns + j] : h[i * columns + a] * curved.jacobian[a * n + j];
+          sum +=
+              left ? curved.jacobian[a * n + i] * h[a * columns + j] : h[i * columns + a] * curved.jacobian[a * n + j];
         }
         out[i * columns + j] = sum;
       }

@@ -25,9 +25,9 @@ class EuclideanChart final : public EuclideanProblem {
   struct CurvedBlock {
     Manifold manifold = Manifold::rotation;
     int block = 0, first = 0, size = 0;
-    double jacobian[9] = {};   // size × size, row major: ∂δ/∂x
+    double jacobian[9] = {};  // size × size, row major: ∂δ/∂x
   };
-  struct Run {                 // `size` consecutive entries of a Jacobian row that belong to a curved block
+  struct Run {  // `size` consecutive entries of a Jacobian row that belong to a curved block
     int position = 0, curved = 0;
   };
   void locate();
@@ -40,8 +40,8 @@ class EuclideanChart final : public EuclideanProblem {
   std::vector<CurvedBlock> curved_;
   std::vector<int> curved_of_block_;
   std::vector<Run> runs_;
-  std::vector<HessianPattern::Pair> pairs_;   // stored pairs with a curved block
-  std::vector<double> gradient_, jacobian_;   // tangent Lagrangian gradient, tangent Jacobian
+  std::vector<HessianPattern::Pair> pairs_;  // stored pairs with a curved block
+  std::vector<double> gradient_, jacobian_;  // tangent Lagrangian gradient, tangent Jacobian
 };
 
 }  // namespace bowstring

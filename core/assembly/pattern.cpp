@@ -26,7 +26,8 @@ void HessianPattern::couple(const BlockLayout& layout, const int* unknowns, int 
 
 void HessianPattern::finish(const BlockLayout& layout) {
   const int blocks = layout.blocks();
-  for (int b = 0; b < blocks; ++b) keys_.push_back((static_cast<std::uint64_t>(b) << 32U) | static_cast<std::uint64_t>(b));
+  for (int b = 0; b < blocks; ++b)
+    keys_.push_back((static_cast<std::uint64_t>(b) << 32U) | static_cast<std::uint64_t>(b));
   std::sort(keys_.begin(), keys_.end());
   keys_.erase(std::unique(keys_.begin(), keys_.end()), keys_.end());
 

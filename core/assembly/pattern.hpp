@@ -39,9 +39,9 @@ class HessianPattern {
   int offset(const BlockLayout& layout, int row_block, int column_block) const noexcept;
 
   std::vector<std::uint64_t> keys_;
-  std::vector<Pair> pairs_;            // sorted by (column, row)
-  std::vector<int> pair_begin_;        // per column block
-  std::vector<int> pair_offset_;       // entries before this pair in a column of its column block, diagonal apart
+  std::vector<Pair> pairs_;       // sorted by (column, row)
+  std::vector<int> pair_begin_;   // per column block
+  std::vector<int> pair_offset_;  // entries before this pair in a column of its column block, diagonal apart
   std::vector<int> begin_, inner_;
 };
 

@@ -40,8 +40,9 @@ Status screened(Status status, const std::vector<double>& numbers, const SiteDec
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     if (std::isfinite(numbers[k])) continue;
     const std::size_t place = k / (numbers.size() / at(site.count));
-    return Status::failure(Code::failed, std::string("its kinematics gives ") + what + " that is not a finite number at " +
-                                             site_name(site.site) + " " + std::to_string(place));
+    return Status::failure(Code::failed, std::string("its kinematics gives ") + what +
+                                             " that is not a finite number at " + site_name(site.site) + " " +
+                                             std::to_string(place));
   }
   return {};
 }
@@ -50,13 +51,20 @@ Status screened(Status status, const std::vector<double>& numbers, const SiteDec
 
 const char* site_name(Site site) noexcept {
   switch (site) {
-    case Site::node: return "node";
-    case Site::station: return "station";
-    case Site::edge: return "edge";
-    case Site::frame: return "frame";
-    case Site::length: return "length";
-    case Site::field: return "field";
-    case Site::closure: break;
+    case Site::node:
+      return "node";
+    case Site::station:
+      return "station";
+    case Site::edge:
+      return "edge";
+    case Site::frame:
+      return "frame";
+    case Site::length:
+      return "length";
+    case Site::field:
+      return "field";
+    case Site::closure:
+      break;
   }
   return "closure row";
 }

@@ -145,7 +145,8 @@ void Assembly::make_rows() {
     const Curve& curve = *scene_.curves[at(table.curve)];
     const int count = table.count() * table.values();
     const std::string name = curve.name + ".closure";
-    const std::string text = curve.declaration.closure_name + " of '" + curve.name + "' (" + std::to_string(count) + ")";
+    const std::string text =
+        curve.declaration.closure_name + " of '" + curve.name + "' (" + std::to_string(count) + ")";
     origins_.push_back({table.curve, -1, static_cast<int>(row_lower_.size()), count, name});
     summary_.row_groups.push_back({name, text, static_cast<int>(row_lower_.size()), count, true});
     row_lower_.resize(row_lower_.size() + at(count), 0.0);

@@ -10,9 +10,9 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr double bound_reach = 1e-6;        // a real unknown so near its bound (relative) lies on it
-constexpr double weak_gap = 1e-6;           // mm: such a row touches …
-constexpr double weak_multiplier = 1e-6;    // N: … and carries no more than this
+constexpr double bound_reach = 1e-6;      // a real unknown so near its bound (relative) lies on it
+constexpr double weak_gap = 1e-6;         // mm: such a row touches …
+constexpr double weak_multiplier = 1e-6;  // N: … and carries no more than this
 
 std::string number(double value, int digits = 4) {
   char text[40];
@@ -96,7 +96,8 @@ void judge_folds(const Assembly& assembly, double minimum_stretch, Certificate& 
       if (stretch <= minimum_stretch) {
         out.folds.push_back("edge " + std::to_string(i) + place + " has folded: stretch ratio " + number(stretch));
       } else if (i > 0 && turn < 0.0) {
-        out.folds.push_back("edge " + std::to_string(i) + place + " turns by more than 90 degrees against the one before it");
+        out.folds.push_back("edge " + std::to_string(i) + place +
+                            " turns by more than 90 degrees against the one before it");
       }
       std::copy_n(edge, 3, previous);
     }
@@ -133,8 +134,8 @@ void judge_crossings(const Assembly& assembly, Certificate& out) {
       const contact::Penetration& exit = found.crossing.exit;
       const auto segment = at(std::clamp(static_cast<int>(exit.vessel_coordinate), 0, vessel.view.nodes - 1));
       out.crossings.push_back("wire '" + wire.name + "' passes through the wall of '" + vessel.name +
-                              "' between its rows, from wire s = " + number(exit.wire_arc) + " mm, vessel s = " +
-                              number(vessel.arc[segment]) + " mm: " + number(exit.depth) +
+                              "' between its rows, from wire s = " + number(exit.wire_arc) +
+                              " mm, vessel s = " + number(vessel.arc[segment]) + " mm: " + number(exit.depth) +
                               " mm there, where a sound mesh allows " + number(found.crossing.allowance) + " mm");
     }
     out.pairs.push_back(found);
@@ -173,10 +174,11 @@ std::string misses(const Certificate& c, const CertificateTable& t) {
 void conclude(const CertificateTable& thresholds, Claim claim, const std::string& claim_reason, Certificate& out) {
   const std::string missed = misses(out, thresholds);
   out.first_order = missed.empty();
-  const std::string flaw = !out.crossings.empty() ? out.crossings.front() : (out.folds.empty() ? "" : out.folds.front());
-  const std::string mend = !out.crossings.empty()
-                               ? "; use a finer wire mesh, a constraint with rows between the nodes, or walk the load up"
-                               : "; give the vessel a stretch-stiffness, or a coarser mesh";
+  const std::string flaw =
+      !out.crossings.empty() ? out.crossings.front() : (out.folds.empty() ? "" : out.folds.front());
+  const std::string mend =
+      !out.crossings.empty() ? "; use a finer wire mesh, a constraint with rows between the nodes, or walk the load up"
+                             : "; give the vessel a stretch-stiffness, or a coarser mesh";
   if (out.first_order && flaw.empty()) {
     out.verdict = Verdict::converged;
     out.reason = "all thresholds of the certificate hold";
@@ -186,13 +188,19 @@ void conclude(const CertificateTable& thresholds, Claim claim, const std::string
   } else {
     switch (claim) {
       case Claim::optimal:
-      case Claim::stalled: out.verdict = Verdict::stalled; break;
+      case Claim::stalled:
+        out.verdict = Verdict::stalled;
+        break;
       case Claim::infeasible:
         // The rows hold: the solver was stuck elsewhere, and the figures say so.
         out.verdict = out.penetration <= thresholds.penetration ? Verdict::stalled : Verdict::infeasible;
         break;
-      case Claim::diverged: out.verdict = Verdict::diverged; break;
-      case Claim::failed: out.verdict = Verdict::failed; break;
+      case Claim::diverged:
+        out.verdict = Verdict::diverged;
+        break;
+      case Claim::failed:
+        out.verdict = Verdict::failed;
+        break;
     }
     out.reason = claim_reason + "; " + missed + (flaw.empty() ? "" : "; " + flaw + mend);
   }
@@ -202,12 +210,18 @@ void conclude(const CertificateTable& thresholds, Claim claim, const std::string
 
 const char* verdict_name(Verdict verdict) noexcept {
   switch (verdict) {
-    case Verdict::converged: return "converged";
-    case Verdict::invalid: return "invalid";
-    case Verdict::stalled: return "stalled";
-    case Verdict::infeasible: return "infeasible";
-    case Verdict::diverged: return "diverged";
-    case Verdict::failed: break;
+    case Verdict::converged:
+      return "converged";
+    case Verdict::invalid:
+      return "invalid";
+    case Verdict::stalled:
+      return "stalled";
+    case Verdict::infeasible:
+      return "infeasible";
+    case Verdict::diverged:
+      return "diverged";
+    case Verdict::failed:
+      break;
   }
   return "failed";
 }

@@ -16,23 +16,23 @@ const char* verdict_name(Verdict verdict) noexcept;
 /// The wire of one contact pair against the spline wall of its vessel.
 struct PairPenetration {
   int wire = 0, vessel = 0;
-  contact::Penetration dense;      ///< 16 parts of every chord
+  contact::Penetration dense;  ///< 16 parts of every chord
   contact::CrossingCheck crossing;
 };
 
 /// What the kernel finds at a point, from the problem and never from the solver's word.
 struct Certificate {
-  double stationarity = 0.0;       ///< N: largest entry of the projected Lagrangian gradient, rotations per edge length
-  double rounding_floor = 0.0;     ///< N: what the formulations' rounding leaves of it
-  double penetration = 0.0;        ///< mm: largest violation of a row
-  double complementarity = 0.0;    ///< N mm: largest |multiplier × distance of the row to its bound|
-  double minimum_multiplier = 0.0; ///< N: smallest signed multiplier, 0 without signed rows
+  double stationarity = 0.0;     ///< N: largest entry of the projected Lagrangian gradient, rotations per edge length
+  double rounding_floor = 0.0;   ///< N: what the formulations' rounding leaves of it
+  double penetration = 0.0;      ///< mm: largest violation of a row
+  double complementarity = 0.0;  ///< N mm: largest |multiplier × distance of the row to its bound|
+  double minimum_multiplier = 0.0;                      ///< N: smallest signed multiplier, 0 without signed rows
   double minimum_stretch = 1.0, maximum_stretch = 1.0;  ///< ℓ/ℓ⁰ over vessel edges
   std::vector<PairPenetration> pairs;
-  std::vector<int> weakly_active;  ///< inequality rows at their bound whose multiplier nearly vanishes
+  std::vector<int> weakly_active;      ///< inequality rows at their bound whose multiplier nearly vanishes
   std::vector<std::string> folds;      ///< each: place and amount of a folded edge or an active bound
   std::vector<std::string> crossings;  ///< each: place and amount of a wall crossed between rows
-  bool first_order = false;        ///< stationarity, rows, complementarity and multipliers are within the thresholds
+  bool first_order = false;  ///< stationarity, rows, complementarity and multipliers are within the thresholds
   Verdict verdict = Verdict::failed;
   std::string reason;
 

@@ -40,7 +40,8 @@ std::vector<Candidate> candidates(const Assembly& assembly, const std::vector<do
   return chosen;
 }
 
-Eigen::VectorXd solve_passive(const Matrix& columns, const std::vector<Candidate>& chosen, const Eigen::VectorXd& target) {
+Eigen::VectorXd solve_passive(const Matrix& columns, const std::vector<Candidate>& chosen,
+                              const Eigen::VectorXd& target) {
   std::vector<Eigen::Triplet<double>> entries;
   int count = 0;
   for (std::size_t c = 0; c < chosen.size(); ++c) {
@@ -102,7 +103,8 @@ Status estimate_multipliers(Assembly& assembly, Span<const double> q, double rea
     const double tolerance = 1e-12 * (1.0 + target.lpNorm<Eigen::Infinity>());
     for (std::size_t c = 0; c < chosen.size(); ++c) {
       if (!chosen[c].is_signed) continue;
-      const bool wrong = chosen[c].passive ? chosen[c].multiplier < 0.0 : slope[static_cast<Eigen::Index>(c)] > tolerance;
+      const bool wrong =
+          chosen[c].passive ? chosen[c].multiplier < 0.0 : slope[static_cast<Eigen::Index>(c)] > tolerance;
       if (wrong) infeasible.push_back(c);
     }
     if (infeasible.empty()) break;

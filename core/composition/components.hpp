@@ -14,8 +14,8 @@ namespace bowstring {
 struct Reading {
   Registry& registry;
   Report& report;
-  Status& plugin_failure;   ///< the first one
-  int dimension = 0;        ///< of the scene; 0 where the file does not say it
+  Status& plugin_failure;  ///< the first one
+  int dimension = 0;       ///< of the scene; 0 where the file does not say it
 
   void keep_failure(const Status& status);
 };
@@ -23,10 +23,10 @@ struct Reading {
 /// Where a plugin is chosen.
 struct ComponentUse {
   Kind kind = Kind::energy;
-  std::string owner;                     ///< "energy 'anchoring'": the table, for messages
-  std::string default_type;              ///< where `type` is left out; "" where it may not be
-  std::vector<std::string> structural;   ///< the table's keys that are not the plugin's, `type` among them
-  bool owner_names_type = false;         ///< `owner` is complete; else "geometry 'sinusoid' of " is put before it
+  std::string owner;                    ///< "energy 'anchoring'": the table, for messages
+  std::string default_type;             ///< where `type` is left out; "" where it may not be
+  std::vector<std::string> structural;  ///< the table's keys that are not the plugin's, `type` among them
+  bool owner_names_type = false;        ///< `owner` is complete; else "geometry 'sinusoid' of " is put before it
 };
 
 /// Looks the `type` of a table up in the registry and reads its other keys against the plugin's schema. The

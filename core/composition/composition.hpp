@@ -12,20 +12,20 @@ namespace bowstring {
 
 /// One thing that is wrong with the user's input, as a person reads it.
 struct InputError {
-  std::string position;  ///< "file:line:column", or "--set path=value"
-  std::string found;     ///< "unknown key 'stifness' in energy 'anchoring'"
-  std::string expected;  ///< "one of: on, name, stiffness"
-  std::string mend;      ///< "did you mean 'stiffness'?"
+  std::string position;      ///< "file:line:column", or "--set path=value"
+  std::string found;         ///< "unknown key 'stifness' in energy 'anchoring'"
+  std::string expected;      ///< "one of: on, name, stiffness"
+  std::string mend;          ///< "did you mean 'stiffness'?"
   std::string text() const;  ///< "position: found; expected …; mend"
 };
 
 /// A plugin that the composition names, with its checked parameters.
 struct ComponentChoice {
   Kind kind = Kind::energy;
-  std::string name;                                ///< the plugin's: "wire-bending"
+  std::string name;  ///< the plugin's: "wire-bending"
   ParameterSet parameters;
   const ComponentDescriptor* descriptor = nullptr;
-  std::string position;                            ///< of the table, "file:line:column"
+  std::string position;  ///< of the table, "file:line:column"
 };
 
 /// `free` | `pinned` | `clamped` | `held-edge`.
@@ -41,7 +41,7 @@ struct EndTable {
 struct VesselTable {
   std::string name;
   ComponentChoice geometry;
-  std::optional<ParameterValue> radius;   ///< a profile; empty: from the geometry's point data
+  std::optional<ParameterValue> radius;  ///< a profile; empty: from the geometry's point data
   ComponentChoice kinematics;
   EndTable end[2];
   bool rigid = false;
@@ -50,35 +50,35 @@ struct VesselTable {
 
 struct WireTable {
   std::string name;
-  std::string vessel;                     ///< "" where the wire has its own geometry
+  std::string vessel;  ///< "" where the wire has its own geometry
   std::optional<ComponentChoice> geometry;
-  int nodes = 0;                          ///< 0: the vessel's or the geometry's
-  ParameterValue radius;                  ///< a profile
+  int nodes = 0;          ///< 0: the vessel's or the geometry's
+  ParameterValue radius;  ///< a profile
   ComponentChoice kinematics;
   EndTable end[2];
   std::string position;
 };
 
 struct EnergyTable {
-  std::string label;    ///< `name`, or else the type: how paths and results call it
-  std::string on;       ///< a curve
+  std::string label;  ///< `name`, or else the type: how paths and results call it
+  std::string on;     ///< a curve
   ComponentChoice component;
 };
 
 struct ConstraintTable {
   std::string label;
-  std::vector<std::string> on;   ///< curves
+  std::vector<std::string> on;  ///< curves
   ComponentChoice component;
 };
 
 /// Thresholds of `converged`.
 struct CertificateTable {
-  double stationarity = 1e-6;      ///< N
-  double penetration = 1e-8;       ///< mm, of rows
-  double complementarity = 1e-8;   ///< N mm
-  double multiplier = -1e-8;       ///< N, smallest admissible
-  double minimum_stretch = 0.2;    ///< an edge at or below this ratio counts as folded
-  std::string require = "none";    ///< "none" | "minimum"
+  double stationarity = 1e-6;     ///< N
+  double penetration = 1e-8;      ///< mm, of rows
+  double complementarity = 1e-8;  ///< N mm
+  double multiplier = -1e-8;      ///< N, smallest admissible
+  double minimum_stretch = 0.2;   ///< an edge at or below this ratio counts as folded
+  std::string require = "none";   ///< "none" | "minimum"
 };
 
 /// A checked, resolved composition: every reference holds, every number is in mm, N, rad.
@@ -86,7 +86,8 @@ struct Composition {
   int schema = 1;
   std::string title;
   std::string file;
-  std::vector<std::string> input_files;  ///< all that the user has given: the file, its bases, data of plugins; absolute
+  std::vector<std::string>
+      input_files;  ///< all that the user has given: the file, its bases, data of plugins; absolute
   int dimension = 3;
   std::vector<VesselTable> vessels;
   std::vector<WireTable> wires;
@@ -94,15 +95,15 @@ struct Composition {
   std::vector<ConstraintTable> constraints;
   ComponentChoice enforcement, solver;
   CertificateTable certificate;
-  std::string resolved_json;            ///< everything above with defaults filled in, as the result document holds it
+  std::string resolved_json;  ///< everything above with defaults filled in, as the result document holds it
   std::vector<std::string> warnings;
   std::vector<std::string> without_effect;  ///< declared, allowed, and idle in this scene: for `explain`
 };
 
 /// `path=value` from the command line, applied after the file's own overrides.
 struct Override {
-  std::string path;    ///< "energy.axial-tension.tension"
-  std::string value;   ///< TOML; what does not parse as TOML is a string
+  std::string path;   ///< "energy.axial-tension.tension"
+  std::string value;  ///< TOML; what does not parse as TOML is a string
 };
 
 struct CompositionRequest {
@@ -112,8 +113,8 @@ struct CompositionRequest {
 
 struct CompositionOutcome {
   std::optional<Composition> composition;
-  std::vector<InputError> errors;   ///< of the whole file at once; empty on success
-  Status plugin_failure;            ///< `failed`: a known plugin could not be loaded (exit code 3)
+  std::vector<InputError> errors;  ///< of the whole file at once; empty on success
+  Status plugin_failure;           ///< `failed`: a known plugin could not be loaded (exit code 3)
 };
 
 /// Reads, overrides, resolves and checks a composition. Opens, through the registry, only the plugins that it names.

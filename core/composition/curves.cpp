@@ -32,7 +32,8 @@ Span<const ParameterDeclaration> vessel_schema() {
 
 Span<const ParameterDeclaration> wire_schema() {
   static const ParameterDeclaration schema[] = {
-      {"nodes", ParameterType::integer, "", "", "nodes of the wire's own mesh, otherwise as many as its vessel has", 3, 1e6},
+      {"nodes", ParameterType::integer, "", "", "nodes of the wire's own mesh, otherwise as many as its vessel has", 3,
+       1e6},
       radius_declaration(nullptr, "outer radius"),
   };
   return {schema, std::size(schema)};

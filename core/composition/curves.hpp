@@ -12,7 +12,7 @@ namespace bowstring {
 /// The names that `on` and `vessel` can refer to.
 struct CurveNames {
   std::vector<std::string> vessels, wires;
-  bool complete = true;   ///< false: a curve's name could not be read, so that a reference may be right after all
+  bool complete = true;  ///< false: a curve's name could not be read, so that a reference may be right after all
 
   std::vector<std::string> all() const;
 };

@@ -85,10 +85,14 @@ class EndReader {
 
 const char* end_type_name(EndType type) noexcept {
   switch (type) {
-    case EndType::free: return "free";
-    case EndType::pinned: return "pinned";
-    case EndType::clamped: return "clamped";
-    case EndType::held_edge: return "held-edge";
+    case EndType::free:
+      return "free";
+    case EndType::pinned:
+      return "pinned";
+    case EndType::clamped:
+      return "clamped";
+    case EndType::held_edge:
+      return "held-edge";
   }
   return "";
 }

@@ -60,8 +60,7 @@ class NumberReader {
     }
     if (rules_.units.size() == 1 || rules_.bare_means_first) return Number{value, 0};
     const std::string number = decimal(value);
-    fail("ambiguous unit: " + subject_ + " is the bare number " + number,
-         kinds_of_number(rules_.units),
+    fail("ambiguous unit: " + subject_ + " is the bare number " + number, kinds_of_number(rules_.units),
          "write " + written_number(rules_, number) + ", which mean different things");
     return std::nullopt;
   }

@@ -23,7 +23,7 @@ struct NumberRules {
 };
 
 struct Number {
-  double value = 0.0;   ///< in units[alternative]
+  double value = 0.0;  ///< in units[alternative]
   int alternative = 0;
 };
 

@@ -107,9 +107,7 @@ class Walk {
     return false;
   }
 
-  bool names_a_type() const {
-    return steps_[next_ - 1] == "kinematics" || (next_ >= 2 && steps_[next_ - 2] == "ends");
-  }
+  bool names_a_type() const { return steps_[next_ - 1] == "kinematics" || (next_ >= 2 && steps_[next_ - 2] == "ends"); }
 
   bool among_ends() const { return next_ > 0 && steps_[next_ - 1] == "ends"; }
 

@@ -25,15 +25,24 @@ std::string expectation(const ParameterDeclaration& declaration) {
   const NumberRules rules(declaration);
   const std::string bounds = expected_bounds(declaration.lower, declaration.upper, declaration.lower_exclusive, "");
   switch (declaration.type) {
-    case ParameterType::scalar: return expected_number(rules);
-    case ParameterType::profile: return expected_number(rules) + ", or a table with 'table', 'segments' or 'column'";
-    case ParameterType::vector: return "a list, each entry " + expected_number(rules);
-    case ParameterType::path: return "text, the path of a file";
-    case ParameterType::choice: return quoted_alternatives(split_choices(declaration.choices));
-    case ParameterType::integer: return "a whole number" + (bounds.empty() ? "" : ", " + bounds);
-    case ParameterType::flag: return "true or false";
-    case ParameterType::text: return "text";
-    case ParameterType::list: return "a list of tables";
+    case ParameterType::scalar:
+      return expected_number(rules);
+    case ParameterType::profile:
+      return expected_number(rules) + ", or a table with 'table', 'segments' or 'column'";
+    case ParameterType::vector:
+      return "a list, each entry " + expected_number(rules);
+    case ParameterType::path:
+      return "text, the path of a file";
+    case ParameterType::choice:
+      return quoted_alternatives(split_choices(declaration.choices));
+    case ParameterType::integer:
+      return "a whole number" + (bounds.empty() ? "" : ", " + bounds);
+    case ParameterType::flag:
+      return "true or false";
+    case ParameterType::text:
+      return "text";
+    case ParameterType::list:
+      return "a list of tables";
   }
   return "";
 }
@@ -43,14 +52,22 @@ std::string assignment(const ParameterDeclaration& declaration) {
   const std::string key = std::string(declaration.key) + " = ";
   switch (declaration.type) {
     case ParameterType::scalar:
-    case ParameterType::profile: return key + written_number(NumberRules(declaration));
-    case ParameterType::vector: return key + "[" + written_number(NumberRules(declaration)) + ", …]";
-    case ParameterType::path: return key + "\"<file>\"";
-    case ParameterType::choice: return key + "\"" + split_choices(declaration.choices).front() + "\"";
-    case ParameterType::integer: return key + "<whole number>";
-    case ParameterType::flag: return key + "true";
-    case ParameterType::text: return key + "\"<text>\"";
-    case ParameterType::list: return key + "[{ … }]";
+    case ParameterType::profile:
+      return key + written_number(NumberRules(declaration));
+    case ParameterType::vector:
+      return key + "[" + written_number(NumberRules(declaration)) + ", …]";
+    case ParameterType::path:
+      return key + "\"<file>\"";
+    case ParameterType::choice:
+      return key + "\"" + split_choices(declaration.choices).front() + "\"";
+    case ParameterType::integer:
+      return key + "<whole number>";
+    case ParameterType::flag:
+      return key + "true";
+    case ParameterType::text:
+      return key + "\"<text>\"";
+    case ParameterType::list:
+      return key + "[{ … }]";
   }
   return key;
 }
@@ -58,10 +75,15 @@ std::string assignment(const ParameterDeclaration& declaration) {
 /// Reads one value of a declared parameter.
 class ValueReader {
  public:
-  ValueReader(const ParameterDeclaration& declaration, const SchemaOwner& owner, bool is_default,
-              Status& schema_fault, Report& report)
-      : declaration_(declaration), owner_(owner), is_default_(is_default), schema_fault_(schema_fault),
-        report_(report), rules_(declaration), subject_("'" + std::string(declaration.key) + "' of " + owner.name) {
+  ValueReader(const ParameterDeclaration& declaration, const SchemaOwner& owner, bool is_default, Status& schema_fault,
+              Report& report)
+      : declaration_(declaration),
+        owner_(owner),
+        is_default_(is_default),
+        schema_fault_(schema_fault),
+        report_(report),
+        rules_(declaration),
+        subject_("'" + std::string(declaration.key) + "' of " + owner.name) {
     rules_.bare_means_first = is_default;
   }
 
@@ -76,15 +98,24 @@ class ValueReader {
  private:
   bool read_as_declared(const Node& node) {
     switch (declaration_.type) {
-      case ParameterType::scalar: return read_scalar(node);
-      case ParameterType::profile: return read_profile(node, subject_, rules_, value_, report_);
-      case ParameterType::vector: return read_vector(node);
-      case ParameterType::path: return read_path(node);
-      case ParameterType::choice: return read_choice(node);
-      case ParameterType::integer: return read_integer(node);
-      case ParameterType::flag: return read_flag(node);
-      case ParameterType::text: return read_text(node);
-      case ParameterType::list: return read_list(node);
+      case ParameterType::scalar:
+        return read_scalar(node);
+      case ParameterType::profile:
+        return read_profile(node, subject_, rules_, value_, report_);
+      case ParameterType::vector:
+        return read_vector(node);
+      case ParameterType::path:
+        return read_path(node);
+      case ParameterType::choice:
+        return read_choice(node);
+      case ParameterType::integer:
+        return read_integer(node);
+      case ParameterType::flag:
+        return read_flag(node);
+      case ParameterType::text:
+        return read_text(node);
+      case ParameterType::list:
+        return read_list(node);
     }
     return false;
   }

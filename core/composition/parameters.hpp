@@ -14,10 +14,10 @@ namespace bowstring {
 
 /// The table whose keys are read against a schema.
 struct SchemaOwner {
-  std::string name;                      ///< "energy 'anchoring'", for messages
-  std::string help;                      ///< what to do about a key that is like no other
-  std::vector<std::string> structural;   ///< keys of the composition itself, which come before the schema's
-  std::vector<std::string> later;        ///< keys of the format that this version does not take yet
+  std::string name;                     ///< "energy 'anchoring'", for messages
+  std::string help;                     ///< what to do about a key that is like no other
+  std::vector<std::string> structural;  ///< keys of the composition itself, which come before the schema's
+  std::vector<std::string> later;       ///< keys of the format that this version does not take yet
 };
 
 /// Reads the parameters that a schema declares, fills in the defaults, and reports what is unknown, missing or wrong.

@@ -79,8 +79,8 @@ class ProfileReader {
 
   bool read_row(const Node& row) {
     if (!row.is_list() || row.items.size() != 2) {
-      return fail(row, "a row of 'table' of " + subject_ + " is " + row_description(row),
-                  "a pair [arc length, value]", "write [\"0 mm\", <value>]");
+      return fail(row, "a row of 'table' of " + subject_ + " is " + row_description(row), "a pair [arc length, value]",
+                  "write [\"0 mm\", <value>]");
     }
     const auto arc = read_number(row.items[0], "an arc length of " + subject_, arc_rules(), report_);
     const bool value_good = read_value(row.items[1], "a value of " + subject_);
@@ -122,8 +122,8 @@ class ProfileReader {
     if (first) out_.unit_alternative = number->alternative;
     if (number->alternative == out_.unit_alternative) return true;
     const auto unit = [&](int i) { return rules_.units[static_cast<std::size_t>(i)]; };
-    return fail(node, subject + " is in " + unit(number->alternative) + ", an earlier one in " +
-                          unit(out_.unit_alternative),
+    return fail(node,
+                subject + " is in " + unit(number->alternative) + ", an earlier one in " + unit(out_.unit_alternative),
                 "one kind of unit in a profile", "write all values in " + unit(out_.unit_alternative));
   }
 
@@ -136,9 +136,9 @@ class ProfileReader {
                                      "units in the values themselves", "remove it");
     }
     if (unit == nullptr) {
-      return rules_.units.size() == 1 || fail(form.value, "'column' of " + subject_ + " without a unit", expected,
-                                              "write { column = \"" + form.value.text + "\", unit = \"" +
-                                                  rules_.units.front() + "\" }");
+      return rules_.units.size() == 1 ||
+             fail(form.value, "'column' of " + subject_ + " without a unit", expected,
+                  "write { column = \"" + form.value.text + "\", unit = \"" + rules_.units.front() + "\" }");
     }
     for (std::size_t i = 0; i < rules_.units.size(); ++i) {
       if (!unit->value.is_text() || unit->value.text != rules_.units[i]) continue;
@@ -153,8 +153,8 @@ class ProfileReader {
     const Entry* origin = node.find("measured-from");
     if (origin == nullptr) return true;
     if (!allowed) {
-      return fail(origin->value, "'measured-from' of " + subject_ + " without a 'table'",
-                  "it beside arc lengths only", "remove it");
+      return fail(origin->value, "'measured-from' of " + subject_ + " without a 'table'", "it beside arc lengths only",
+                  "remove it");
     }
     const std::string& name = origin->value.text;
     if (name == "tip") out_.profile.measured_from = Profile::Origin::tip;
@@ -185,9 +185,12 @@ bool read_profile(const Node& node, const std::string& subject, const NumberRule
 
 const char* origin_name(Profile::Origin origin) noexcept {
   switch (origin) {
-    case Profile::Origin::tip: return "tip";
-    case Profile::Origin::sheath: return "sheath";
-    case Profile::Origin::first_end: break;
+    case Profile::Origin::tip:
+      return "tip";
+    case Profile::Origin::sheath:
+      return "sheath";
+    case Profile::Origin::first_end:
+      break;
   }
   return "";
 }

@@ -32,7 +32,8 @@ class NumberWriter {
 Json profile_json(const Profile& profile, const NumberWriter& number) {
   Json result;
   switch (profile.form) {
-    case Profile::Form::constant: return number(profile.constant);
+    case Profile::Form::constant:
+      return number(profile.constant);
     case Profile::Form::table:
       result["table"] = Json::array();
       for (std::size_t i = 0; i < profile.arc.size(); ++i) {
@@ -47,7 +48,9 @@ Json profile_json(const Profile& profile, const NumberWriter& number) {
         result["segments"][profile.segment[i]] = number(profile.value[i]);
       }
       return result;
-    case Profile::Form::column: result["column"] = profile.column; return result;
+    case Profile::Form::column:
+      result["column"] = profile.column;
+      return result;
   }
   return result;
 }
@@ -57,13 +60,18 @@ void add_parameters(Json& table, const ParameterSet& set, Span<const ParameterDe
 Json value_json(const ParameterValue& value, const ParameterDeclaration& declaration) {
   const NumberWriter number(declaration, value.unit_alternative);
   switch (value.type) {
-    case ParameterType::scalar: return number(value.number);
-    case ParameterType::profile: return profile_json(value.profile, number);
-    case ParameterType::integer: return value.integer;
-    case ParameterType::flag: return value.flag;
+    case ParameterType::scalar:
+      return number(value.number);
+    case ParameterType::profile:
+      return profile_json(value.profile, number);
+    case ParameterType::integer:
+      return value.integer;
+    case ParameterType::flag:
+      return value.flag;
     case ParameterType::path:
     case ParameterType::choice:
-    case ParameterType::text: return value.text;
+    case ParameterType::text:
+      return value.text;
     case ParameterType::vector: {
       Json list = Json::array();
       for (const double entry : value.vector) list.push_back(number(entry));
@@ -84,7 +92,8 @@ Json value_json(const ParameterValue& value, const ParameterDeclaration& declara
 
 void add_parameters(Json& table, const ParameterSet& set, Span<const ParameterDeclaration> schema) {
   for (const ParameterDeclaration& declaration : schema) {
-    if (const ParameterValue* value = set.find(declaration.key)) table[declaration.key] = value_json(*value, declaration);
+    if (const ParameterValue* value = set.find(declaration.key))
+      table[declaration.key] = value_json(*value, declaration);
   }
 }
 

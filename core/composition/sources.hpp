@@ -12,9 +12,9 @@ namespace bowstring {
 
 /// A file with its bases and overrides, put together.
 struct SourceTree {
-  Node root;                              ///< without `schema`, `base`, `plugin-path` and `set`
-  std::vector<std::string> plugin_path;   ///< absolute; the file's own before its bases'
-  std::vector<std::string> files;         ///< that have been read, absolute
+  Node root;                             ///< without `schema`, `base`, `plugin-path` and `set`
+  std::vector<std::string> plugin_path;  ///< absolute; the file's own before its bases'
+  std::vector<std::string> files;        ///< that have been read, absolute
 };
 
 /// Reads the file and, recursively, its `base`. A file's tables are laid over those of its base (entries of a list

@@ -25,8 +25,8 @@ void check_origins(const Node& table, const ComponentChoice& component, const st
     const Entry* entry = table.find(value.key);
     if (entry == nullptr) continue;
     report.error(entry->value.find("measured-from")->value.position,
-                 "'measured-from' in '" + value.key + "' of " + owner + ", which acts on a vessel",
-                 "it on a wire only", "remove it: a vessel's arc length counts from its first end");
+                 "'measured-from' in '" + value.key + "' of " + owner + ", which acts on a vessel", "it on a wire only",
+                 "remove it: a vessel's arc length counts from its first end");
   }
 }
 

@@ -90,8 +90,7 @@ std::string_view reason_of(std::string_view description) {
 
 void report_syntax_error(const toml::parse_error& error, std::string_view text,
                          const std::shared_ptr<const Source>& source, Report& report) {
-  Position position{source, static_cast<int>(error.source().begin.line),
-                    static_cast<int>(error.source().begin.column)};
+  Position position{source, static_cast<int>(error.source().begin.line), static_cast<int>(error.source().begin.column)};
   const std::string_view reason = reason_of(error.description());
   const std::size_t open = reason.find('\''), close = reason.rfind('\'');
   if (reason.substr(0, 15) == "cannot redefine" && open < close) {

@@ -67,13 +67,20 @@ std::string shown(const std::string& text) {
 
 std::string description(const Node& node) {
   switch (node.type) {
-    case Node::Type::table: return "a table";
-    case Node::Type::list: return "a list";
-    case Node::Type::text: return "text " + shown(node.text);
-    case Node::Type::integer: return "whole number " + std::to_string(node.integer);
-    case Node::Type::number: return "number " + decimal(node.number);
-    case Node::Type::flag: return node.flag ? "true" : "false";
-    case Node::Type::date: return "a date or time";
+    case Node::Type::table:
+      return "a table";
+    case Node::Type::list:
+      return "a list";
+    case Node::Type::text:
+      return "text " + shown(node.text);
+    case Node::Type::integer:
+      return "whole number " + std::to_string(node.integer);
+    case Node::Type::number:
+      return "number " + decimal(node.number);
+    case Node::Type::flag:
+      return node.flag ? "true" : "false";
+    case Node::Type::date:
+      return "a date or time";
   }
   return "nothing";
 }

@@ -17,9 +17,9 @@ std::optional<Quantity> split_quantity(std::string_view text);
 
 enum class UnitOutcome {
   converted,
-  unknown_unit,       ///< no such unit, or no multiple of one (a logarithm, an offset)
-  other_dimension,    ///< a unit, but of something else
-  no_database         ///< the unit needs the UDUNITS-2 database, which cannot be read
+  unknown_unit,     ///< no such unit, or no multiple of one (a logarithm, an offset)
+  other_dimension,  ///< a unit, but of something else
+  no_database       ///< the unit needs the UDUNITS-2 database, which cannot be read
 };
 
 /// A number in the first unit is `multiplier` / `divisor` times that number in the second. Two factors, because

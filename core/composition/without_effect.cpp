@@ -14,7 +14,8 @@ class Idle {
   Idle(const Node& root, const Composition& composition) : root_(root), composition_(composition) {}
 
   std::vector<std::string> notes() {
-    for (std::size_t i = 0; i < composition_.vessels.size(); ++i) note_vessel(item("vessel", i), composition_.vessels[i]);
+    for (std::size_t i = 0; i < composition_.vessels.size(); ++i)
+      note_vessel(item("vessel", i), composition_.vessels[i]);
     for (std::size_t i = 0; i < composition_.wires.size(); ++i) note_wire(item("wire", i), composition_.wires[i]);
     for (const EnergyTable& energy : composition_.energies) note_energy(energy);
     if (composition_.constraints.empty()) note_without_rows();

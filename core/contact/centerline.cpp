@@ -61,8 +61,7 @@ struct ControlValues {
   }
 };
 
-void power_basis(Interpolation interpolation, const ControlValues& from, int segment,
-                 double out[4]) noexcept {
+void power_basis(Interpolation interpolation, const ControlValues& from, int segment, double out[4]) noexcept {
   if (interpolation == Interpolation::polyline) {
     out[0] = from.node(segment);
     out[1] = from.node(segment + 1) - out[0];
@@ -171,8 +170,7 @@ double nodal_curvature(const double* points, int dimension, int node) noexcept {
   const double a = std::sqrt(squared_length(before)), b = std::sqrt(squared_length(after));
   if (a == 0.0 || b == 0.0) return std::numeric_limits<double>::infinity();
 
-  const double cross[3] = {before[1] * after[2] - before[2] * after[1],
-                           before[2] * after[0] - before[0] * after[2],
+  const double cross[3] = {before[1] * after[2] - before[2] * after[1], before[2] * after[0] - before[0] * after[2],
                            before[0] * after[1] - before[1] * after[0]};
   const double c = std::sqrt(squared_length(chord));
   const double circle = c > 0.0 ? 2.0 * std::sqrt(squared_length(cross)) / (a * b * c) : 0.0;

@@ -35,8 +35,7 @@ class Follower {
 
   void begin(const double* x, double wire_radius, std::optional<double> start) noexcept {
     const GapShape shape{GapForm::squared, wire_radius};
-    closest_ =
-        start ? closest(vessel_, x, shape, whole(vessel_), *start) : globally_closest(vessel_, x, shape);
+    closest_ = start ? closest(vessel_, x, shape, whole(vessel_), *start) : globally_closest(vessel_, x, shape);
     measure(x);
   }
 
@@ -131,8 +130,7 @@ double crossing_allowance(const Centerline& vessel, const WirePolyline& wire) no
   return std::min(curvature * longest * longest / 4.0, clearance) + clearance / 20.0;
 }
 
-CrossingCheck check_crossing(const Centerline& vessel, const WirePolyline& wire,
-                             std::optional<double> start) noexcept {
+CrossingCheck check_crossing(const Centerline& vessel, const WirePolyline& wire, std::optional<double> start) noexcept {
   CrossingCheck check;
   check.allowance = crossing_allowance(vessel, wire);
   bool first = true;

@@ -144,8 +144,8 @@ ClosestPoint closest_point(const SegmentSearch& search, CurveCoordinate at, Loca
   return {at, location, value.gap, value.distance, value.clearance};
 }
 
-ClosestPoint closest_on_spline(const Centerline& curve, const double* x, GapShape shape,
-                               const Stretch& stretch, double start) noexcept {
+ClosestPoint closest_on_spline(const Centerline& curve, const double* x, GapShape shape, const Stretch& stretch,
+                               double start) noexcept {
   CurveCoordinate at = stretch.clip(start);
   SegmentSearch search(curve, at.segment, x, shape);
   const int direction = search.at(at.u).slope > 0.0 ? -1 : 1;
@@ -270,8 +270,7 @@ NodeRange window_nodes(Interpolation interpolation, Window window, int nodes) no
   return {first.first, last.first + last.count - first.first};
 }
 
-ClosestPoint closest(const Centerline& curve, const double* x, GapShape shape, Window window,
-                     double start) noexcept {
+ClosestPoint closest(const Centerline& curve, const double* x, GapShape shape, Window window, double start) noexcept {
   const Stretch stretch(window, curve.nodes);
   return curve.interpolation == Interpolation::spline ? closest_on_spline(curve, x, shape, stretch, start)
                                                       : closest_on_polyline(curve, x, shape, stretch);
@@ -305,9 +304,8 @@ ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape
   return best;
 }
 
-NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape shape,
-                          const ClosestPoint& closest, double* gradient, double weight,
-                          double* hessian) noexcept {
+NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape shape, const ClosestPoint& closest,
+                          double* gradient, double weight, double* hessian) noexcept {
   const int dim = curve.dimension;
   const Stencil nodes = stencil(curve.interpolation, closest.at, curve.nodes);
   const CurvePoint q = segment_polynomial(curve, closest.at.segment, x).at(closest.at.u);
@@ -374,8 +372,7 @@ void bind_along(const Centerline& curve, const double* points, int count, double
     sigma[i] = MonotoneBinding::sigma(sample_of[static_cast<std::size_t>(i)]);
     if (shared(i, i - 1) || shared(i, i + 1)) continue;
     const Window window{sigma[i] - reach, sigma[i] + reach};
-    sigma[i] =
-        closest(curve, points + i * curve.dimension, {GapForm::distance, 0.0}, window, sigma[i]).at.sigma();
+    sigma[i] = closest(curve, points + i * curve.dimension, {GapForm::distance, 0.0}, window, sigma[i]).at.sigma();
   }
 }
 

@@ -64,8 +64,7 @@ struct ClosestPoint {
 /// its branch; on a polyline, where φ is convex on each edge, it takes the lowest of the edges' exact minima.
 /// σ* is exact to rounding, which second derivatives need. x: dimension numbers, mm. Allocates nothing; the
 /// number of steps is bounded; a NaN in x or in the nodes gives a NaN gap.
-ClosestPoint closest(const Centerline& curve, const double* x, GapShape shape, Window window,
-                     double start) noexcept;
+ClosestPoint closest(const Centerline& curve, const double* x, GapShape shape, Window window, double start) noexcept;
 
 /// The place of least gap on the whole curve: a scan of each segment, then `closest` from every local minimum
 /// of it.
@@ -76,9 +75,8 @@ ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape
 /// `gradient`: (1 + count)·dimension numbers, x first, then the nodes in order; null where not wanted.
 /// `hessian`: `weight`·∇²h as packed lower triangle of that order, row by row; null where not wanted.
 /// Returns the nodes; at most `max_stencil` of them.
-NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape shape,
-                          const ClosestPoint& closest, double* gradient, double weight,
-                          double* hessian) noexcept;
+NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape shape, const ClosestPoint& closest,
+                          double* gradient, double weight, double* hessian) noexcept;
 
 /// A first place on the curve for each of `count` wire points (count × dimension, mm): of all assignments
 /// that are monotone along the curve, the one with the least sum of squared distances, so that no point of

@@ -14,8 +14,7 @@ namespace {
 std::size_t interval_of(const std::vector<double>& x, double where) {
   const auto above = std::upper_bound(x.begin(), x.end(), where);
   const auto index = above - x.begin() - 1;
-  return static_cast<std::size_t>(
-      std::clamp<std::ptrdiff_t>(index, 0, static_cast<std::ptrdiff_t>(x.size()) - 2));
+  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(index, 0, static_cast<std::ptrdiff_t>(x.size()) - 2));
 }
 
 }  // namespace
@@ -41,8 +40,7 @@ std::vector<double> even_stations(double length, int count) {
   return station;
 }
 
-double interpolate_linearly(const std::vector<double>& abscissa, const std::vector<double>& value,
-                            double where) {
+double interpolate_linearly(const std::vector<double>& abscissa, const std::vector<double>& value, double where) {
   if (abscissa.size() < 2 || where <= abscissa.front()) return value.front();
   if (where >= abscissa.back()) return value.back();
   const std::size_t i = interval_of(abscissa, where);

@@ -13,8 +13,7 @@ std::vector<double> polyline_arc(const std::vector<double>& points, int dimensio
 std::vector<double> even_stations(double length, int count);
 
 /// Linear interpolation of `value`, given at the increasing `abscissa`, at `where`; constant beyond the ends.
-double interpolate_linearly(const std::vector<double>& abscissa, const std::vector<double>& value,
-                            double where);
+double interpolate_linearly(const std::vector<double>& abscissa, const std::vector<double>& value, double where);
 
 /// Index of the entry of the increasing `abscissa` that is nearest to `where`.
 std::size_t nearest_index(const std::vector<double>& abscissa, double where);

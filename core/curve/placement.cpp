@@ -9,11 +9,10 @@ namespace bowstring {
 
 namespace {
 
-std::string wrong_count(const char* key, std::size_t found, std::size_t expected, int dimension,
-                        const char* mend) {
+std::string wrong_count(const char* key, std::size_t found, std::size_t expected, int dimension, const char* mend) {
   return "'" + std::string(key) + "' has " + std::to_string(found) + (found == 1 ? " number" : " numbers") +
-         "; expected " + std::to_string(expected) + " in a scene of dimension " + std::to_string(dimension) +
-         "; " + mend;
+         "; expected " + std::to_string(expected) + " in a scene of dimension " + std::to_string(dimension) + "; " +
+         mend;
 }
 
 }  // namespace
@@ -36,11 +35,10 @@ Status place(const LocalCurve& curve, const ParameterSet& parameters, int dimens
     if (given->vector.size() == expected) {
       rotation = planar ? Vector3{{0.0, 0.0, given->vector[0]}} : Vector3::load(given->vector.data());
     } else {
-      errors +=
-          (errors.empty() ? "" : "\n") +
-          wrong_count("rotation", given->vector.size(), expected, dimension,
-                      planar ? "give the angle, as in [\"30 deg\"]"
-                             : "give a rotation vector: the axis times the angle, as in [0, 0, \"30 deg\"]");
+      errors += (errors.empty() ? "" : "\n") +
+                wrong_count("rotation", given->vector.size(), expected, dimension,
+                            planar ? "give the angle, as in [\"30 deg\"]"
+                                   : "give a rotation vector: the axis times the angle, as in [0, 0, \"30 deg\"]");
     }
   }
   if (!errors.empty()) return Status::failure(Code::invalid_input, errors);

@@ -37,8 +37,7 @@ inline constexpr ParameterDeclaration rotation_declaration{
     .type = ParameterType::vector,
     .unit = "rad",
     .default_text = "",
-    .description =
-        "turn about the local origin: one angle in the plane, a rotation vector in space; by default none"};
+    .description = "turn about the local origin: one angle in the plane, a rotation vector in space; by default none"};
 
 /// Appends `curve`, turned by `rotation` and moved to `origin`, as the one curve of `out`. In the plane the
 /// points' z has to be 0 and is left out. `invalid_input` where the two parameters do not have the right

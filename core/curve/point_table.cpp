@@ -67,8 +67,7 @@ std::string counted(std::size_t count, const char* noun) {
 
 class Reader {
  public:
-  Reader(const std::string& file, int dimension)
-      : file_(file), dimension_(static_cast<std::size_t>(dimension)) {}
+  Reader(const std::string& file, int dimension) : file_(file), dimension_(static_cast<std::size_t>(dimension)) {}
 
   Status read(PointTable& out) {
     std::ifstream stream(file_, std::ios::binary);
@@ -97,8 +96,7 @@ class Reader {
                                "composition");
   }
 
-  void error(std::size_t line, const std::string& found, const std::string& expected,
-             const std::string& mend) {
+  void error(std::size_t line, const std::string& found, const std::string& expected, const std::string& mend) {
     ++error_count_;
     if (error_count_ > most_reported) return;
     const std::string place = line > 0 ? file_ + ":" + std::to_string(line) : file_;
@@ -137,8 +135,8 @@ class Reader {
 
   bool read_header(const std::vector<std::string>& cells) {
     const std::size_t errors_before = error_count_;
-    const bool all_numbers = std::all_of(cells.begin(), cells.end(),
-                                         [](const std::string& cell) { return as_number(cell).has_value(); });
+    const bool all_numbers =
+        std::all_of(cells.begin(), cells.end(), [](const std::string& cell) { return as_number(cell).has_value(); });
     if (all_numbers) {
       error(line_, "numbers where the columns' names belong", expected_columns(),
             "put a line with the names before the points");
@@ -153,11 +151,9 @@ class Reader {
     const auto same = [&name](const Column& column) { return column.name == name; };
     const std::string number = std::to_string(columns_.size() + 1);
     if (name.empty()) {
-      error(line_, "column " + number + " has no name", "a name for every column",
-            "name it or remove the comma");
+      error(line_, "column " + number + " has no name", "a name for every column", "name it or remove the comma");
     } else if (std::any_of(columns_.begin(), columns_.end(), same)) {
-      error(line_, "column '" + name + "' stands there twice", "every name once",
-            "rename or remove one of them");
+      error(line_, "column '" + name + "' stands there twice", "every name once", "rename or remove one of them");
     }
     Column column{name, Role::number, 0};
     if (name == "x_mm" || name == "y_mm" || name == "z_mm") {
@@ -166,8 +162,7 @@ class Reader {
     } else if (name == "label" || name == "segment") {
       column.role = Role::label;
       if (has_label_) {
-        error(line_, "both a column 'label' and a column 'segment'", "one column of labels",
-              "remove one of them");
+        error(line_, "both a column 'label' and a column 'segment'", "one column of labels", "remove one of them");
       }
       has_label_ = true;
     } else {
@@ -197,8 +192,7 @@ class Reader {
     if (cells.size() != columns_.size()) {
       error(line_, "a row of " + counted(cells.size(), "cell"),
             std::to_string(columns_.size()) + ", one for each column that the header names",
-            cells.size() < columns_.size() ? "complete the row or remove it"
-                                           : "remove what is too much, or name it");
+            cells.size() < columns_.size() ? "complete the row or remove it" : "remove what is too much, or name it");
       return;
     }
     const std::size_t errors_before = error_count_;
@@ -270,8 +264,7 @@ class Reader {
       error(line_out_of_plane_,
             "2-D scene with 3-D data: z_mm is " + as_text(height_) + " here and not 0 in " +
                 counted(out_of_plane_, "row") + " in all",
-            "0 in every row, or no column z_mm",
-            "set dimension = 3 in [scene], or project the points into the plane");
+            "0 in every row, or no column z_mm", "set dimension = 3 in [scene], or project the points into the plane");
     }
     if (rows_ < 3) {
       error(0, counted(rows_, "point"), "at least 3", "add rows, in the order of the curve");

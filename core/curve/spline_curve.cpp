@@ -214,8 +214,7 @@ std::vector<Piece> pieces_between(const std::vector<std::size_t>& inner, std::si
 }
 
 /// Residuals of each piece; that of a point which is a knot counts half on either side.
-std::vector<Piece> measured_pieces(const std::vector<std::size_t>& inner, const Data& data,
-                                   const FixedKnots& fit) {
+std::vector<Piece> measured_pieces(const std::vector<std::size_t>& inner, const Data& data, const FixedKnots& fit) {
   std::vector<Piece> pieces = pieces_between(inner, data.count() - 1);
   for (Piece& piece : pieces) {
     for (std::size_t i = piece.begin; i <= piece.end; ++i) {
@@ -333,9 +332,8 @@ Status distance_not_met(const Data& data, double distance) {
   }
   const double mean_count = static_cast<double>(data.count() - 1);
   std::ostringstream text;
-  text << "smoothing " << distance
-       << " mm cannot be met to rounding; expected more, or points spaced evenly (points " << closest + 1
-       << " and " << closest + 2 << " are the closest, "
+  text << "smoothing " << distance << " mm cannot be met to rounding; expected more, or points spaced evenly (points "
+       << closest + 1 << " and " << closest + 2 << " are the closest, "
        << (data.site[closest + 1] - data.site[closest]) * mean_count / (data.site.back() - data.site.front())
        << " of the mean step apart); change the smoothing or remove points that nearly coincide";
   return Status::failure(Code::invalid_input, text.str());
@@ -355,8 +353,7 @@ void SplineCurve::evaluate(double parameter, int order, double* out) const {
   for (int k = 0; k < dimension_; ++k) {
     LocalCoefficients local{};
     for (int j = 0; j <= degree_; ++j) {
-      local[static_cast<std::size_t>(j)] =
-          control_[static_cast<std::size_t>((span - degree_ + j) * dimension_ + k)];
+      local[static_cast<std::size_t>(j)] = control_[static_cast<std::size_t>((span - degree_ + j) * dimension_ + k)];
     }
     out[k] = evaluate_local(knots_, degree_, span, parameter, order, local);
   }
@@ -373,8 +370,7 @@ double SplineCurve::curvature(double parameter) const {
   double e[3] = {0.0, 0.0, 0.0};
   evaluate(parameter, 1, d);
   evaluate(parameter, 2, e);
-  const double cross =
-      std::hypot(d[1] * e[2] - d[2] * e[1], d[2] * e[0] - d[0] * e[2], d[0] * e[1] - d[1] * e[0]);
+  const double cross = std::hypot(d[1] * e[2] - d[2] * e[1], d[2] * e[0] - d[0] * e[2], d[0] * e[1] - d[1] * e[0]);
   return cross / std::pow(std::hypot(d[0], d[1], d[2]), 3);
 }
 
@@ -397,16 +393,15 @@ std::vector<double> chord_parameters(const std::vector<double>& points, int dime
   return parameter;
 }
 
-Status fit_spline(const std::vector<double>& parameter, const std::vector<double>& points, int dimension,
-                  int degree, double distance, SplineFit& out) {
+Status fit_spline(const std::vector<double>& parameter, const std::vector<double>& points, int dimension, int degree,
+                  double distance, SplineFit& out) {
   if (parameter.size() <= static_cast<std::size_t>(degree)) {
     return Status::failure(Code::invalid_input, "a spline of degree " + std::to_string(degree) + " through " +
                                                     std::to_string(parameter.size()) + " points; expected at least " +
                                                     std::to_string(degree + 1));
   }
   const Data data{parameter, as_matrix(points, dimension), degree};
-  const std::vector<std::size_t> inner =
-      distance > 0.0 ? smoothing_knots(data, distance) : interpolation_knots(data);
+  const std::vector<std::size_t> inner = distance > 0.0 ? smoothing_knots(data, distance) : interpolation_knots(data);
   FixedKnots fit(data, full_knots(data, inner));
   if (distance > 0.0 && !inner.empty()) {
     if (!meet_distance(fit, distance)) return distance_not_met(data, distance);

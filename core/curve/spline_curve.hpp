@@ -56,10 +56,10 @@ std::vector<double> chord_parameters(const std::vector<double>& points, int dime
 /// `distance`; on these knots it minimises the sum of squared jumps of the derivative of order `degree` among
 /// the splines that leave `distance`. Where a single polynomial leaves less, it is the answer.
 ///
-/// `invalid_input`: too few points; or rounding hides `distance`, because it is tiny or the points are spaced very unevenly.
-/// Source: P. Dierckx, Curve and Surface Fitting with Splines (Oxford 1993), ch. 5; and Computer Graphics and
+/// `invalid_input`: too few points; or rounding hides `distance`, because it is tiny or the points are spaced very
+/// unevenly. Source: P. Dierckx, Curve and Surface Fitting with Splines (Oxford 1993), ch. 5; and Computer Graphics and
 /// Image Processing 20 (1982) 171.
-Status fit_spline(const std::vector<double>& parameter, const std::vector<double>& points, int dimension,
-                  int degree, double distance, SplineFit& out);
+Status fit_spline(const std::vector<double>& parameter, const std::vector<double>& points, int dimension, int degree,
+                  double distance, SplineFit& out);
 
 }  // namespace bowstring

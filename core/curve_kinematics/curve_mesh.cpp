@@ -20,7 +20,8 @@ void add_stations(CurveMesh& mesh) {
   }
   for (int i = 1; i <= last; ++i) {
     const auto node = static_cast<std::size_t>(i);
-    mesh.stations.push_back({i - 1, i, 0.5 * (mesh.edge_length[node - 1] + mesh.edge_length[node]), mesh.node_arc[node]});
+    mesh.stations.push_back(
+        {i - 1, i, 0.5 * (mesh.edge_length[node - 1] + mesh.edge_length[node]), mesh.node_arc[node]});
   }
   if (mesh.held_tangent[1] >= 0) {
     const LinearInLength edge = mesh.edge_length.back();

@@ -36,7 +36,7 @@ struct CurveMesh {
   std::vector<LinearInLength> node_arc;     ///< nodes
   /// A half station at the first end where its tangent is held, one per interior node, one at the last end.
   std::vector<Station> stations;
-  int held_tangent[2] = {-1, -1};           ///< per end: which held tangent, −1 where there is none
+  int held_tangent[2] = {-1, -1};  ///< per end: which held tangent, −1 where there is none
   int held_tangents = 0;
 
   int dimension() const noexcept { return curve.dimension; }

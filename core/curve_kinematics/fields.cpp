@@ -29,7 +29,8 @@ void orient(Manifold manifold, const double* tangent, const double* near, double
 }  // namespace
 
 FieldSlot add_field(FieldDeclaration field, KinematicsDeclaration& out) {
-  FieldSlot slot{0, 0, coordinate_count(field.manifold, field.dimension), tangent_count(field.manifold, field.dimension)};
+  FieldSlot slot{0, 0, coordinate_count(field.manifold, field.dimension),
+                 tangent_count(field.manifold, field.dimension)};
   for (const FieldDeclaration& earlier : out.fields) {
     slot.coordinate += earlier.count * coordinate_count(earlier.manifold, earlier.dimension);
     slot.unknown += earlier.count * tangent_count(earlier.manifold, earlier.dimension);
@@ -104,7 +105,8 @@ std::vector<double> edge_tangents(const CurveMesh& mesh, const double* points) {
   return out;
 }
 
-std::vector<double> transported_orientations(Manifold manifold, const std::vector<double>& tangents, const double* first) {
+std::vector<double> transported_orientations(Manifold manifold, const std::vector<double>& tangents,
+                                             const double* first) {
   const int d = manifold == Manifold::circle ? 2 : 3;
   const int each = coordinate_count(manifold, 1);
   const int count = static_cast<int>(tangents.size()) / d;
@@ -128,15 +130,17 @@ Status check_curve(const CurveMesh& mesh, const Needs& needs) {
     for (int i = 0; i < mesh.edges(); ++i) {
       const double* p = points + i * d;
       if (!std::equal(p, p + d, p + d)) continue;
-      return Status::failure(Code::invalid_input, "edge " + std::to_string(i) + " of '" + mesh.curve.name + "' has length zero " +
+      return Status::failure(Code::invalid_input, "edge " + std::to_string(i) + " of '" + mesh.curve.name +
+                                                      "' has length zero " +
                                                       (reference ? "in State 1" : "at the start") + ": nodes " +
                                                       std::to_string(i) + " and " + std::to_string(i + 1) +
                                                       " coincide; drop one of them or sample the curve anew");
     }
   }
   if (needs.stretch && !mesh.stretching()) {
-    return Status::failure(Code::unsupported, std::string("an energy needs the length of every edge of '") + mesh.curve.name +
-                                                  "', but they are fixed shares of one length: only a vessel stretches");
+    return Status::failure(Code::unsupported,
+                           std::string("an energy needs the length of every edge of '") + mesh.curve.name +
+                               "', but they are fixed shares of one length: only a vessel stretches");
   }
   return {};
 }

@@ -35,12 +35,13 @@ FieldDeclaration held_tangent_field(const CurveMesh& mesh, Manifold manifold, co
 std::vector<double> edge_tangents(const CurveMesh& mesh, const double* points);
 
 /// Coordinates of orientations with these first axes: angles without jumps in the plane, Bishop frames in space
-/// (Bishop 1975). The first follows `first` (one orientation's coordinates) by the nearest angle or by parallel transport;
-/// where that is null it is any.
-std::vector<double> transported_orientations(Manifold manifold, const std::vector<double>& tangents, const double* first);
+/// (Bishop 1975). The first follows `first` (one orientation's coordinates) by the nearest angle or by parallel
+/// transport; where that is null it is any.
+std::vector<double> transported_orientations(Manifold manifold, const std::vector<double>& tangents,
+                                             const double* first);
 
-/// `invalid_input` naming the first edge of length zero, in State 1 or at the start; `unsupported` where an energy needs
-/// the length of every edge and they have none of their own.
+/// `invalid_input` naming the first edge of length zero, in State 1 or at the start; `unsupported` where an energy
+/// needs the length of every edge and they have none of their own.
 Status check_curve(const CurveMesh& mesh, const Needs& needs);
 
 }  // namespace bowstring

@@ -61,7 +61,8 @@ using FrameOrientation = Orientation<Manifold::rotation>;
 inline StationStrain<1> station_strain(const PlanarOrientation& earlier, const PlanarOrientation& later) noexcept {
   return {{{later.angle - earlier.angle}}, {{-1.0}}, {{1.0}}};
 }
-inline StationStrain<2> station_strain(const DirectionOrientation& earlier, const DirectionOrientation& later) noexcept {
+inline StationStrain<2> station_strain(const DirectionOrientation& earlier,
+                                       const DirectionOrientation& later) noexcept {
   const lie::RelativeTurn turn = lie::relative_turn(earlier.rotation, later.rotation);
   return {turn.value, turn.by_a, turn.by_b};
 }

@@ -25,8 +25,9 @@ Status sample_edges(const CurveMesh& mesh, const double* points, const std::vect
   out.orientation.clear();
   for (const double t : edge_coordinate) {
     if (!(t >= -slack && t <= mesh.edges() + slack)) {
-      return Status::failure(Code::invalid_input, "edge coordinate " + std::to_string(t) + " is not on '" + mesh.curve.name +
-                                                      "', which goes from 0 to " + std::to_string(mesh.edges()));
+      return Status::failure(Code::invalid_input, "edge coordinate " + std::to_string(t) + " is not on '" +
+                                                      mesh.curve.name + "', which goes from 0 to " +
+                                                      std::to_string(mesh.edges()));
     }
     const int edge = std::clamp(static_cast<int>(std::floor(t)), 0, mesh.edges() - 1);
     const double fraction = std::clamp(t - edge, 0.0, 1.0);

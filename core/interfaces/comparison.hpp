@@ -27,17 +27,20 @@ class GroundCost {
   /// A cheap lower bound of `value`; `unsupported` where there is none.
   virtual Status lower_bound(const Measure3& a, const Measure3& b, Span<const int> pairs,
                              Span<double> value) const noexcept {
-    (void)a; (void)b; (void)pairs; (void)value;
+    (void)a;
+    (void)b;
+    (void)pairs;
+    (void)value;
     return Status::failure(Code::unsupported, "this ground cost has no lower bound");
   }
 };
 
 struct TransportPlan {
-  double value = 0.0;                         ///< min ⟨C, γ⟩
-  std::vector<int> row, column;               ///< of the nonzero entries
+  double value = 0.0;            ///< min ⟨C, γ⟩
+  std::vector<int> row, column;  ///< of the nonzero entries
   std::vector<double> mass;
   std::vector<double> dual_row, dual_column;
-  double gap = 0.0;                           ///< primal minus dual value
+  double gap = 0.0;  ///< primal minus dual value
 };
 
 /// kind `transport`: optimal transport between two weighted sets. It may keep a basis from call to call.

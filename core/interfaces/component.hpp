@@ -13,8 +13,20 @@ inline constexpr std::uint32_t plugin_magic = 0x424f5753;  // "BOWS"
 
 /// The extension points. The names in compositions and on the command line are those of `kind_name`.
 enum class Kind : int {
-  geometry, kinematics, energy, constraint, enforcement, solver, integrator, ground_cost, transport,
-  projection, loss, residual, readout, writer
+  geometry,
+  kinematics,
+  energy,
+  constraint,
+  enforcement,
+  solver,
+  integrator,
+  ground_cost,
+  transport,
+  projection,
+  loss,
+  residual,
+  readout,
+  writer
 };
 inline constexpr int kind_count = 14;
 

@@ -13,18 +13,18 @@ namespace bowstring {
 /// What a constraint sees of the scene when it declares its rows.
 struct ConstraintScene {
   int dimension = 3;
-  std::vector<CurveView> on;           ///< the curves named in `on`, in that order
-  std::vector<const double*> radius;   ///< per curve of `on`: nodal radius, mm, or null where none is known
-  bool starts_along = false;           ///< the first curve starts along the second
-  double start_arc = 0.0;              ///< and there, at this arc coordinate of it, mm
-  int window_segments = 2;             ///< what the solver asks for where the user says nothing: the larger of this …
-  double window_length = 0.0;          ///< … and this, mm
+  std::vector<CurveView> on;          ///< the curves named in `on`, in that order
+  std::vector<const double*> radius;  ///< per curve of `on`: nodal radius, mm, or null where none is known
+  bool starts_along = false;          ///< the first curve starts along the second
+  double start_arc = 0.0;             ///< and there, at this arc coordinate of it, mm
+  int window_segments = 2;            ///< what the solver asks for where the user says nothing: the larger of this …
+  double window_length = 0.0;         ///< … and this, mm
 };
 
 struct RowDeclaration {
   int rows = 0;
-  std::vector<int> place_begin;   ///< rows + 1: row r reads places [place_begin[r], place_begin[r+1])
-  std::vector<Place> places;      ///< `curve` is the scene's index (CurveView::index)
+  std::vector<int> place_begin;      ///< rows + 1: row r reads places [place_begin[r], place_begin[r+1])
+  std::vector<Place> places;         ///< `curve` is the scene's index (CurveView::index)
   std::vector<double> lower, upper;  ///< per row; ±infinity where unbounded; equal: an equality
   std::vector<std::string> warnings;
 };
@@ -39,10 +39,10 @@ class PlaceTables {
 /// Outputs are caller-owned and left alone when empty. Row r's numbers come in the order of its places.
 struct RowEvaluation {
   const PlaceTables* at = nullptr;
-  Span<double> residual;        ///< rows
-  Span<double> jacobian;        ///< row after row: ∂r/∂y over all places of the row
-  Span<const double> weight;    ///< rows, read only for `hessian`
-  Span<double> hessian;         ///< row after row: packed lower triangle of weight·∂²r/∂y²
+  Span<double> residual;      ///< rows
+  Span<double> jacobian;      ///< row after row: ∂r/∂y over all places of the row
+  Span<const double> weight;  ///< rows, read only for `hessian`
+  Span<double> hessian;       ///< row after row: packed lower triangle of weight·∂²r/∂y²
 };
 
 /// The largest motion of a row's point relative to its wall, transverse to it, since the last `accept`.
@@ -54,10 +54,10 @@ struct Travel {
 /// One row as the result document reports it.
 struct RowReport {
   int wire_curve = -1, vessel_curve = -1;
-  double wire_coordinate = 0.0;    ///< in edges of the wire: 2.25 is a quarter along the third
-  double vessel_coordinate = 0.0;  ///< in edges of the vessel
-  double gap = 0.0;                ///< mm, ≤ 0 inside
-  double clearance = 0.0;          ///< mm
+  double wire_coordinate = 0.0;           ///< in edges of the wire: 2.25 is a quarter along the third
+  double vessel_coordinate = 0.0;         ///< in edges of the vessel
+  double gap = 0.0;                       ///< mm, ≤ 0 inside
+  double clearance = 0.0;                 ///< mm
   double direction[3] = {0.0, 0.0, 0.0};  ///< unit: of the force that the vessel exerts on the wire
 };
 
@@ -69,12 +69,21 @@ class Constraint {
   virtual Status declare(const ConstraintScene& scene, RowDeclaration& out) noexcept = 0;
   virtual Status evaluate(const RowEvaluation& evaluation) const noexcept = 0;
   /// `at` becomes the accepted point, from which the next `travel` and closest-point searches start.
-  virtual Status accept(const PlaceTables& at) noexcept { (void)at; return {}; }
-  virtual Travel travel(const PlaceTables& at) const noexcept { (void)at; return {}; }
+  virtual Status accept(const PlaceTables& at) noexcept {
+    (void)at;
+    return {};
+  }
+  virtual Travel travel(const PlaceTables& at) const noexcept {
+    (void)at;
+    return {};
+  }
   /// A closest point has come so near the edge of what its row covers that an epoch is due.
   virtual bool rebind_due() const noexcept { return false; }
   /// Binds every row anew at the accepted point.
-  virtual Status rebind(RowDeclaration& out) noexcept { (void)out; return {}; }
+  virtual Status rebind(RowDeclaration& out) noexcept {
+    (void)out;
+    return {};
+  }
   /// Contact rows describe themselves; other constraints leave `out` empty.
   virtual Status report(const PlaceTables& at, std::vector<RowReport>& out) const noexcept {
     (void)at;

@@ -13,8 +13,8 @@ enum class Extension : int { sliding, fixed, stretching };
 /// One end of a curve. Axes are global.
 struct EndCondition {
   bool position_held[3] = {false, false, false};
-  bool rotation_held = false;   ///< the tangent, with material frames the whole frame, is held at the node
-  bool edge_held = false;       ///< both nodes of the end edge are held, and its length does not count in L
+  bool rotation_held = false;           ///< the tangent, with material frames the whole frame, is held at the node
+  bool edge_held = false;               ///< both nodes of the end edge are held, and its length does not count in L
   double tangent[3] = {0.0, 0.0, 0.0};  ///< unit, along the curve; the direction that is held
 };
 
@@ -26,7 +26,7 @@ struct CurveView {
   int dimension = 3;
   int nodes = 0;
   Extension extension = Extension::stretching;
-  bool rigid = false;               ///< no unknowns
+  bool rigid = false;                   ///< no unknowns
   const double* reference = nullptr;    ///< State 1 node positions, nodes × dimension, mm
   const double* start = nullptr;        ///< node positions that a solver starts from, nodes × dimension, mm
   const double* edge_length = nullptr;  ///< nodes − 1: edge lengths at State 1 (vessel) or at the start (wire), mm

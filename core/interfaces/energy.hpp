@@ -21,10 +21,10 @@ struct IdleParameter {
 };
 
 struct EnergyDeclaration {
-  std::vector<const Law*> laws;                ///< owned by the energy, alive as long as it
-  std::vector<LawDescription> descriptions;    ///< one per law
+  std::vector<const Law*> laws;              ///< owned by the energy, alive as long as it
+  std::vector<LawDescription> descriptions;  ///< one per law
   Needs needs;
-  std::vector<std::string> warnings;           ///< what the user should know of this formulation in this scene
+  std::vector<std::string> warnings;  ///< what the user should know of this formulation in this scene
   std::vector<IdleParameter> without_effect;
 };
 

@@ -14,10 +14,10 @@ struct PointData {
 };
 
 struct CurveGeometry {
-  std::string name;                       ///< of the curve within its graph; "" for a single curve
-  std::vector<double> points;             ///< nodes × dimension, mm; LPS where anatomical
-  std::vector<PointData> data;            ///< each with one value per node
-  std::vector<std::string> label;         ///< one per node, or empty: segment labels
+  std::string name;                                 ///< of the curve within its graph; "" for a single curve
+  std::vector<double> points;                       ///< nodes × dimension, mm; LPS where anatomical
+  std::vector<PointData> data;                      ///< each with one value per node
+  std::vector<std::string> label;                   ///< one per node, or empty: segment labels
   std::vector<double> first_tangent, last_tangent;  ///< exact end tangents along the curve, or empty
 };
 

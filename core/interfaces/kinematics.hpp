@@ -18,16 +18,16 @@ namespace bowstring {
 enum class Manifold : int { real, vector, circle, direction, rotation };
 
 struct FieldDeclaration {
-  std::string name;                 ///< "position", "orientation", "edge-length", "length"
-  std::string reason;               ///< why it exists, for `explain`
+  std::string name;    ///< "position", "orientation", "edge-length", "length"
+  std::string reason;  ///< why it exists, for `explain`
   Manifold manifold = Manifold::real;
-  int dimension = 1;                ///< n of `vector`
-  int count = 0;                    ///< entries
-  std::vector<double> reference;    ///< coordinates of State 1, count × coordinates
-  std::vector<double> start;        ///< coordinates that a solver starts from
-  std::vector<char> fixed;          ///< count × tangent numbers; empty: all free. Fixed ones are eliminated
-  std::vector<double> lower, upper; ///< bounds of a `real` field, count; empty: none
-  std::vector<double> station;      ///< count: arc coordinate of each entry, for orders along the curve, mm
+  int dimension = 1;                 ///< n of `vector`
+  int count = 0;                     ///< entries
+  std::vector<double> reference;     ///< coordinates of State 1, count × coordinates
+  std::vector<double> start;         ///< coordinates that a solver starts from
+  std::vector<char> fixed;           ///< count × tangent numbers; empty: all free. Fixed ones are eliminated
+  std::vector<double> lower, upper;  ///< bounds of a `real` field, count; empty: none
+  std::vector<double> station;       ///< count: arc coordinate of each entry, for orders along the curve, mm
 };
 
 /// The places of one site: which unknowns each depends on. Unknowns are numbered within the curve, field after
@@ -35,29 +35,29 @@ struct FieldDeclaration {
 struct SiteDeclaration {
   Site site = Site::node;
   int count = 0;
-  int values = 0;                 ///< numbers in y, (ds, s) included where they vary
-  bool lengths_vary = false;      ///< the last two numbers of y are ds and s
-  bool identity = false;          ///< ∂y/∂δ = I, no curvature: the stencil is the unknown itself
-  bool linear = false;            ///< no curvature
-  int width = 0;                  ///< unknowns in a stencil
-  std::vector<int> stencil;       ///< count × width; −1 pads
-  std::vector<double> ds, arc;    ///< count: length of material and arc coordinate at the start
+  int values = 0;               ///< numbers in y, (ds, s) included where they vary
+  bool lengths_vary = false;    ///< the last two numbers of y are ds and s
+  bool identity = false;        ///< ∂y/∂δ = I, no curvature: the stencil is the unknown itself
+  bool linear = false;          ///< no curvature
+  int width = 0;                ///< unknowns in a stencil
+  std::vector<int> stencil;     ///< count × width; −1 pads
+  std::vector<double> ds, arc;  ///< count: length of material and arc coordinate at the start
 };
 
 struct KinematicsDeclaration {
   std::vector<FieldDeclaration> fields;
-  std::vector<SiteDeclaration> sites;   ///< node and, where asked for, the others
-  std::string closure_name;             ///< of the closure rows, for `explain`: "edge closure"
+  std::vector<SiteDeclaration> sites;  ///< node and, where asked for, the others
+  std::string closure_name;            ///< of the closure rows, for `explain`: "edge closure"
 };
 
 /// One site's places at one state. Outputs are caller-owned and left alone when empty.
 struct SiteEvaluation {
   Site site = Site::node;
-  Span<const double> q;        ///< this curve's coordinates, all fields
-  Span<double> values;         ///< count × values: y
-  Span<double> jacobian;       ///< count × values × width: B = ∂y/∂δ at δ = 0
-  Span<const double> stress;   ///< count × values, read only for `curvature`
-  Span<double> curvature;      ///< count × packed_size(width): Σ_a stress_a ∂²y_a/∂δ²
+  Span<const double> q;       ///< this curve's coordinates, all fields
+  Span<double> values;        ///< count × values: y
+  Span<double> jacobian;      ///< count × values × width: B = ∂y/∂δ at δ = 0
+  Span<const double> stress;  ///< count × values, read only for `curvature`
+  Span<double> curvature;     ///< count × packed_size(width): Σ_a stress_a ∂²y_a/∂δ²
 };
 
 /// Position and orientation of material points of the curve.

@@ -23,21 +23,21 @@ struct LawDescription {
   /// arc length inside an edge acts on two nodes with weights 1 − t and t.
   std::vector<int> places;
   std::vector<double> weight;
-  bool linear = false;      ///< W is linear in what it reads: no modulus is asked for
-  bool isotropic = true;    ///< depends on ζ through |ζ| (and |ζ⁰|) alone: may read two-component strains
-  bool objective = true;    ///< claims invariance under rigid motions of the whole scene
+  bool linear = false;    ///< W is linear in what it reads: no modulus is asked for
+  bool isotropic = true;  ///< depends on ζ through |ζ| (and |ζ⁰|) alone: may read two-component strains
+  bool objective = true;  ///< claims invariance under rigid motions of the whole scene
 };
 
 /// A batch of places of one site. Outputs that are not wanted are null. n = dimension, P = number of parameters.
 struct LawBatch {
   int count = 0;
-  int dimension = 0;                      ///< numbers in x
-  const double* x = nullptr;              ///< count × n: strain ω = ζ/ds, stretch ratio ℓ/ds, position p, or L
-  const double* reference = nullptr;      ///< count × n: x in State 1
+  int dimension = 0;                         ///< numbers in x
+  const double* x = nullptr;                 ///< count × n: strain ω = ζ/ds, stretch ratio ℓ/ds, position p, or L
+  const double* reference = nullptr;         ///< count × n: x in State 1
   const double* const* parameter = nullptr;  ///< P arrays of count values, sampled at the places
-  double* energy = nullptr;   ///< count: W
-  double* stress = nullptr;   ///< count × n: W_x
-  double* modulus = nullptr;  ///< count × packed_size(n): W_xx
+  double* energy = nullptr;                  ///< count: W
+  double* stress = nullptr;                  ///< count × n: W_x
+  double* modulus = nullptr;                 ///< count × packed_size(n): W_xx
   /// Only asked for where `has_parameter_derivatives`: for sensitivities, and where a parameter moves with the place.
   double* parameter_energy = nullptr;   ///< count × P: W_p
   double* parameter_stress = nullptr;   ///< count × n × P: W_xp

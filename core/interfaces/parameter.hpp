@@ -22,11 +22,11 @@ struct ParameterDeclaration {
   /// "": optional without default (`Parameters::has` tells).
   const char* default_text;
   const char* description;
-  double lower = -1e308;         ///< smallest admissible number, in `unit`
-  double upper = 1e308;          ///< largest admissible number, in `unit`
-  bool lower_exclusive = false;  ///< `lower` itself is not admissible
-  bool differentiable = false;   ///< results are differentiable in this number
-  const char* choices = "";      ///< of a `choice`: "first|second"
+  double lower = -1e308;                        ///< smallest admissible number, in `unit`
+  double upper = 1e308;                         ///< largest admissible number, in `unit`
+  bool lower_exclusive = false;                 ///< `lower` itself is not admissible
+  bool differentiable = false;                  ///< results are differentiable in this number
+  const char* choices = "";                     ///< of a `choice`: "first|second"
   const ParameterDeclaration* items = nullptr;  ///< of a `list` of tables: the declaration of one entry
   int item_count = 0;
 };
@@ -38,10 +38,10 @@ struct Profile {
 
   Form form = Form::constant;
   double constant = 0.0;
-  std::vector<double> arc;             ///< of a table, increasing; linear in between, constant beyond
-  std::vector<double> value;           ///< of a table or of segments
-  std::vector<std::string> segment;    ///< of segments: labels of the geometry's point data
-  std::string column;                  ///< of a column: name of the geometry's point data
+  std::vector<double> arc;           ///< of a table, increasing; linear in between, constant beyond
+  std::vector<double> value;         ///< of a table or of segments
+  std::vector<std::string> segment;  ///< of segments: labels of the geometry's point data
+  std::string column;                ///< of a column: name of the geometry's point data
   Origin measured_from = Origin::first_end;
 };
 
@@ -51,16 +51,16 @@ struct ParameterSet;
 struct ParameterValue {
   std::string key;
   ParameterType type = ParameterType::scalar;
-  bool given = false;           ///< false: the declared default
-  int unit_alternative = 0;     ///< which of the units separated by '|'
-  double number = 0.0;          ///< scalar
-  long integer = 0;             ///< integer
-  bool flag = false;            ///< flag
-  std::string text;             ///< choice, text, or path (absolute)
-  std::vector<double> vector;   ///< vector
-  Profile profile;              ///< profile
+  bool given = false;               ///< false: the declared default
+  int unit_alternative = 0;         ///< which of the units separated by '|'
+  double number = 0.0;              ///< scalar
+  long integer = 0;                 ///< integer
+  bool flag = false;                ///< flag
+  std::string text;                 ///< choice, text, or path (absolute)
+  std::vector<double> vector;       ///< vector
+  Profile profile;                  ///< profile
   std::vector<ParameterSet> items;  ///< list
-  std::string position;         ///< "file:line:column" of the value in the composition, "" for a default
+  std::string position;             ///< "file:line:column" of the value in the composition, "" for a default
 };
 
 /// The checked parameters of one component. The accessors throw `std::out_of_range` naming the key when the

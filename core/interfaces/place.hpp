@@ -7,12 +7,12 @@ namespace bowstring {
 /// | site    | y                                    | what it is |
 /// |---------|--------------------------------------|------------|
 /// | node    | p (dimension)                        | position of a node, an unknown in every kinematics: ∂y/∂δ = I |
-/// | station | ζ (1, 2 or 3) [, ds, s]              | rotation across a node between its two edges, or across half an edge at a held tangent |
-/// | edge    | ℓ (1) [, ds, s]                      | length of an edge; ds is its rest length |
-/// | frame   | its coordinates (angle, quaternion)  | orientation of an edge; derivatives in its body tangent |
-/// | length  | L (1)                                | length of the curve in the body, held edges included |
-/// | field   | the unknown itself                   | an extra unknown that a term declared |
-/// | closure | residual of the kinematics' own rows | not for terms: |p_{i+1} − p_i| − ℓ_i, or p_{i+1} − p_i − ℓ_i R_i e₁ |
+/// | station | ζ (1, 2 or 3) [, ds, s]              | rotation across a node between its two edges, or across half an
+/// edge at a held tangent | | edge    | ℓ (1) [, ds, s]                      | length of an edge; ds is its rest length
+/// | | frame   | its coordinates (angle, quaternion)  | orientation of an edge; derivatives in its body tangent | |
+/// length  | L (1)                                | length of the curve in the body, held edges included | | field   |
+/// the unknown itself                   | an extra unknown that a term declared | | closure | residual of the
+/// kinematics' own rows | not for terms: |p_{i+1} − p_i| − ℓ_i, or p_{i+1} − p_i − ℓ_i R_i e₁ |
 ///
 /// ζ has one component in the plane (signed turning angle), two in space without material frames (in a
 /// transported basis that is the kinematics' own, so that only isotropic laws may read it), three with frames

@@ -18,15 +18,15 @@ struct SparsityPattern {
 
 /// Consecutive rows of one origin.
 struct RowGroup {
-  std::string name;      ///< "iliac.closure" or the constraint's label
-  std::string text;      ///< "edge closure of 'iliac' (158)", for people
+  std::string name;  ///< "iliac.closure" or the constraint's label
+  std::string text;  ///< "edge closure of 'iliac' (158)", for people
   int first = 0, count = 0;
   bool closure = false;  ///< a kinematics' own rows, which no enforcement touches
 };
 
 struct ProblemSummary {
-  int unknowns = 0;       ///< free tangent numbers
-  int fixed = 0;          ///< eliminated ones
+  int unknowns = 0;  ///< free tangent numbers
+  int fixed = 0;     ///< eliminated ones
   int equalities = 0;
   int inequalities = 0;
   bool bounded_unknowns = false;
@@ -36,9 +36,9 @@ struct ProblemSummary {
 /// Outputs are caller-owned and left alone when null or empty.
 struct ProblemEvaluation {
   double* energy = nullptr;
-  Span<double> gradient;   ///< unknowns: of δ ↦ E(q · Exp δ) at 0, or of x ↦ E on a chart
-  Span<double> rows;       ///< rows
-  Span<double> jacobian;   ///< in the order of `jacobian_pattern`
+  Span<double> gradient;  ///< unknowns: of δ ↦ E(q · Exp δ) at 0, or of x ↦ E on a chart
+  Span<double> rows;      ///< rows
+  Span<double> jacobian;  ///< in the order of `jacobian_pattern`
 };
 
 /// The same problem for solvers of Rⁿ: coordinates x ∈ Rⁿ around a base point, x = 0 at the base on rotations and
@@ -46,7 +46,7 @@ struct ProblemEvaluation {
 class EuclideanProblem {
  public:
   virtual ~EuclideanProblem() = default;
-  virtual void start(Span<double> x) const noexcept = 0;                     ///< x of the base point
+  virtual void start(Span<double> x) const noexcept = 0;  ///< x of the base point
   virtual void state(Span<const double> x, Span<double> q) const noexcept = 0;
   virtual Status evaluate(Span<const double> x, const ProblemEvaluation& evaluation) noexcept = 0;
   /// Lower triangle of energy_factor·∇²E + Σ multiplier_r ∇²r, with the chart's own second derivatives.

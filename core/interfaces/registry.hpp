@@ -9,8 +9,8 @@ namespace bowstring {
 
 /// Where a component comes from, for the provenance of a result.
 struct ComponentOrigin {
-  std::string file;     ///< the library
-  std::string sha256;   ///< of that file
+  std::string file;    ///< the library
+  std::string sha256;  ///< of that file
   std::string abi_tag;
 };
 

@@ -88,8 +88,8 @@ inline Matrix3 left_jacobian(const Twist& xi) noexcept {
   const JacobianCoefficients k = jacobian_coefficients(omega * omega);
   const double along = 1.0 - omega * omega * k.b;
   const double across = omega * k.a;
-  return {{1.0, 0.0, 0.0,                                        //
-           k.a * xi[2] + k.b * omega * xi[1], along, -across,    //
+  return {{1.0, 0.0, 0.0,                                      //
+           k.a * xi[2] + k.b * omega * xi[1], along, -across,  //
            -k.a * xi[1] + k.b * omega * xi[2], across, along}};
 }
 

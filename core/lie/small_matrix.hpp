@@ -98,7 +98,7 @@ Vector<N, T> normalized(const Vector<N, T>& a) {
 /// R rows of C numbers, stored row by row.
 template <int R, int C, class T = double>
 struct Matrix {
-  std::array<T, static_cast<std::size_t>(R * C)> data{};
+  std::array<T, static_cast<std::size_t>(R* C)> data{};
 
   static constexpr int rows() noexcept { return R; }
   static constexpr int columns() noexcept { return C; }

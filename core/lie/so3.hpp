@@ -81,8 +81,8 @@ struct BasicRotation {
   /// Its columns are the body axes in space.
   constexpr Matrix<3, 3, T> matrix() const {
     const T one(1), two(2);
-    return {{one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y),    //
-             two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x),    //
+    return {{one - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y),  //
+             two * (x * y + w * z), one - two * (x * x + z * z), two * (y * z - w * x),  //
              two * (x * z - w * y), two * (y * z + w * x), one - two * (x * x + y * y)}};
   }
   /// R e₁, the tangent of a curve's frame.

@@ -8,11 +8,14 @@ namespace bowstring {
 /// Numbers that one entry of a field stores.
 constexpr int coordinate_count(Manifold manifold, int dimension) noexcept {
   switch (manifold) {
-    case Manifold::vector: return dimension;
+    case Manifold::vector:
+      return dimension;
     case Manifold::direction:
-    case Manifold::rotation: return 4;
+    case Manifold::rotation:
+      return 4;
     case Manifold::real:
-    case Manifold::circle: break;
+    case Manifold::circle:
+      break;
   }
   return 1;
 }
@@ -20,11 +23,15 @@ constexpr int coordinate_count(Manifold manifold, int dimension) noexcept {
 /// Dimension of the tangent space of one entry of a field.
 constexpr int tangent_count(Manifold manifold, int dimension) noexcept {
   switch (manifold) {
-    case Manifold::vector: return dimension;
-    case Manifold::direction: return 2;
-    case Manifold::rotation: return 3;
+    case Manifold::vector:
+      return dimension;
+    case Manifold::direction:
+      return 2;
+    case Manifold::rotation:
+      return 3;
     case Manifold::real:
-    case Manifold::circle: break;
+    case Manifold::circle:
+      break;
   }
   return 1;
 }

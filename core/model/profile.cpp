@@ -41,9 +41,9 @@ Status sample_segments(const Profile& profile, const Curve& curve, const std::ve
     if (std::find(curve.label.begin(), curve.label.end(), segment) != curve.label.end()) continue;
     std::vector<std::string> labels = curve.label;
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
-    return Status::failure(Code::invalid_input, "a value for segment '" + segment + "', which the geometry of '" +
-                                                    curve.name + "' does not label; expected one of: " + list_of(labels) +
-                                                    did_you_mean(segment, labels));
+    return Status::failure(Code::invalid_input,
+                           "a value for segment '" + segment + "', which the geometry of '" + curve.name +
+                               "' does not label; expected one of: " + list_of(labels) + did_you_mean(segment, labels));
   }
   for (const double s : arc) {
     const std::string& label = curve.label[nearest_index(curve.arc, s)];
@@ -63,7 +63,7 @@ Status sample_column(const Profile& profile, const Curve& curve, const std::vect
     return {};
   }
   const std::string text = "a profile from column '" + profile.column + "', which the geometry of '" + curve.name +
-                     "' does not have; expected one of: " + list_of(names);
+                           "' does not have; expected one of: " + list_of(names);
   return Status::failure(Code::invalid_input, text + did_you_mean(profile.column, names));
 }
 
@@ -73,10 +73,15 @@ Status sample_profile(const Profile& profile, const Curve& curve, const std::vec
                       std::vector<double>& out) {
   out.clear();
   switch (profile.form) {
-    case Profile::Form::constant: out.assign(arc.size(), profile.constant); return {};
-    case Profile::Form::segments: return sample_segments(profile, curve, arc, out);
-    case Profile::Form::column: return sample_column(profile, curve, arc, out);
-    case Profile::Form::table: break;
+    case Profile::Form::constant:
+      out.assign(arc.size(), profile.constant);
+      return {};
+    case Profile::Form::segments:
+      return sample_segments(profile, curve, arc, out);
+    case Profile::Form::column:
+      return sample_column(profile, curve, arc, out);
+    case Profile::Form::table:
+      break;
   }
   const double length = curve.arc.empty() ? 0.0 : curve.arc.back();
   for (const double s : arc) {

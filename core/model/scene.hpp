@@ -40,14 +40,14 @@ Owned<Interface> create(const ComponentChoice& choice, Status& status) {
 /// One curve of the scene with what the composition, the geometry and its kinematics say of it.
 struct Curve {
   std::string name;
-  CurveView view;                       ///< points into the vectors below
+  CurveView view;  ///< points into the vectors below
   std::vector<double> reference, start, edge_length, fraction, arc;
-  std::vector<double> radius;           ///< nodal; empty where none is known
-  std::vector<PointData> data;          ///< the geometry's, one value per node
+  std::vector<double> radius;   ///< nodal; empty where none is known
+  std::vector<PointData> data;  ///< the geometry's, one value per node
   std::vector<std::string> label;
   EndType end_type[2] = {EndType::free, EndType::free};
-  std::string end_position[2];          ///< where the composition says so
-  int along = -1;                       ///< the vessel that a wire starts along
+  std::string end_position[2];  ///< where the composition says so
+  int along = -1;               ///< the vessel that a wire starts along
   std::string kinematics_name;
   Owned<Kinematics> kinematics{nullptr, nullptr};
   Needs needs;
@@ -96,8 +96,8 @@ struct Scene {
 
 struct SceneOutcome {
   std::unique_ptr<Scene> scene;
-  std::vector<InputError> errors;   ///< of the input (exit code 2)
-  Status plugin_failure;            ///< of a plugin (exit code 3)
+  std::vector<InputError> errors;  ///< of the input (exit code 2)
+  Status plugin_failure;           ///< of a plugin (exit code 3)
 };
 
 /// Builds curves, samples profiles, asks energies for their needs, kinematics for their fields and constraints for

@@ -42,7 +42,8 @@ std::vector<double> resample(const std::vector<double>& points, int dimension, i
     for (int k = 0; k < dimension; ++k) {
       std::vector<double> coordinate;
       for (std::size_t i = at(k); i < points.size(); i += at(dimension)) coordinate.push_back(points[i]);
-      for (int i = 0; i < nodes; ++i) out[at(i * dimension + k)] = interpolate_linearly(arc, coordinate, stations[at(i)]);
+      for (int i = 0; i < nodes; ++i)
+        out[at(i * dimension + k)] = interpolate_linearly(arc, coordinate, stations[at(i)]);
     }
   }
   std::copy_n(points.begin(), dimension, out.begin());
@@ -131,7 +132,7 @@ class Builder {
   std::unique_ptr<Scene> scene_;
   std::vector<InputError> errors_;
   Status plugin_failure_;
-  std::vector<double> tangents_[2];   // of the geometry that is being read
+  std::vector<double> tangents_[2];  // of the geometry that is being read
 };
 
 void Builder::set_geometry(Curve& curve, CurveGeometry&& geometry) {
@@ -156,7 +157,8 @@ bool Builder::check_points(const Curve& curve, const std::string& position) {
     const double* p = curve.reference.data() + at(i * d);
     for (int k = 0; k < d; ++k) {
       if (std::isfinite(p[k])) continue;
-      error(position, "a coordinate that is not a finite number at node " + std::to_string(i) + " of '" + curve.name + "'",
+      error(position,
+            "a coordinate that is not a finite number at node " + std::to_string(i) + " of '" + curve.name + "'",
             "finite coordinates", "");
       return false;
     }
@@ -164,8 +166,9 @@ bool Builder::check_points(const Curve& curve, const std::string& position) {
     double squared = 0.0;
     for (int k = 0; k < d; ++k) squared += (p[k] - p[k - d]) * (p[k] - p[k - d]);
     if (squared > 0.0) continue;
-    error(position, "nodes " + std::to_string(i - 1) + " and " + std::to_string(i) + " of '" + curve.name +
-                        "' coincide at " + point_text(p, d),
+    error(position,
+          "nodes " + std::to_string(i - 1) + " and " + std::to_string(i) + " of '" + curve.name + "' coincide at " +
+              point_text(p, d),
           "nodes apart from each other", "drop one of them or give 'nodes' so that the curve is sampled anew");
     return false;
   }
@@ -219,8 +222,9 @@ void Builder::set_ends(Curve& curve, const EndTable* ends) {
     double squared = 0.0;
     for (const double t : tangent) squared += t * t;
     if (squared == 0.0) {
-      error(table.position, "a tangent without a direction at the " + std::string(e == 0 ? "first" : "last") +
-                                " end of '" + curve.name + "'",
+      error(table.position,
+            "a tangent without a direction at the " + std::string(e == 0 ? "first" : "last") + " end of '" +
+                curve.name + "'",
             "a vector that is not zero", "");
     }
     std::copy(tangent.begin(), tangent.end(), end.tangent);
@@ -271,7 +275,8 @@ void Builder::check_tube(const Curve& curve, const std::string& position) {
   if (fold.value < largest_tube_curvature) return;
   error(position,
         "the tube of vessel '" + curve.name + "' folds into itself at s = " + number(curve.arc[at(fold.node)]) +
-            " mm, " + point_text(curve.reference.data() + at(fold.node * composition_.dimension), composition_.dimension) +
+            " mm, " +
+            point_text(curve.reference.data() + at(fold.node * composition_.dimension), composition_.dimension) +
             ": radius times curvature is " + number(fold.value, 3) + " (radius " +
             number(curve.radius[at(fold.node)], 3) + " mm, bend radius " +
             number(curve.radius[at(fold.node)] / fold.value, 3) + " mm)",
@@ -294,8 +299,8 @@ void Builder::add_vessel(const VesselTable& table) {
   status = geometry->build(composition_.dimension, graph);
   if (!passed(status, table.geometry)) return;
   if (graph.curves.size() != 1) {
-    error(table.geometry.position, "a geometry of " + std::to_string(graph.curves.size()) + " curves for vessel '" +
-                                       table.name + "'",
+    error(table.geometry.position,
+          "a geometry of " + std::to_string(graph.curves.size()) + " curves for vessel '" + table.name + "'",
           "one curve", "");
     return;
   }
@@ -309,7 +314,8 @@ void Builder::add_vessel(const VesselTable& table) {
   bool known = table.radius.has_value();
   if (known) {
     radius = table.radius->profile;
-  } else if (std::any_of(curve->data.begin(), curve->data.end(), [](const PointData& d) { return d.name == "radius_mm"; })) {
+  } else if (std::any_of(curve->data.begin(), curve->data.end(),
+                         [](const PointData& d) { return d.name == "radius_mm"; })) {
     radius.form = Profile::Form::column;
     radius.column = "radius_mm";
     known = true;
@@ -324,9 +330,10 @@ void Builder::add_vessel(const VesselTable& table) {
       curve->radius = std::move(sampled);
       const auto smallest = std::min_element(curve->radius.begin(), curve->radius.end());
       if (!(*smallest > 0.0)) {
-        error(position, "a lumen radius of " + number(*smallest) + " mm at s = " +
-                            number(curve->arc[static_cast<std::size_t>(smallest - curve->radius.begin())]) + " mm of '" +
-                            curve->name + "'",
+        error(position,
+              "a lumen radius of " + number(*smallest) +
+                  " mm at s = " + number(curve->arc[static_cast<std::size_t>(smallest - curve->radius.begin())]) +
+                  " mm of '" + curve->name + "'",
               "a positive one everywhere", "");
       } else if (is_constrained({table.name})) {
         check_tube(*curve, position);
@@ -364,7 +371,8 @@ void Builder::check_clearance(const Curve& wire, const Curve& vessel, const std:
   if (node < 0) return;
   error(position,
         "wire '" + wire.name + "' (radius " + number(wire.radius[at(node)]) + " mm) is as wide as the lumen of '" +
-            vessel.name + "' or wider, by " + number(worst) + " mm at s = " + number(wire.arc[at(node)] * stretch) + " mm",
+            vessel.name + "' or wider, by " + number(worst) + " mm at s = " + number(wire.arc[at(node)] * stretch) +
+            " mm",
         "a wire radius smaller than the lumen's everywhere",
         "reduce the wire's radius, or use a constraint without clearance");
 }
@@ -376,7 +384,8 @@ void Builder::add_wire(const WireTable& table) {
   curve->view.kind = CurveKind::wire;
   const Curve* vessel = find(table.vessel);
   if (vessel == nullptr) {
-    error(table.position, "wire '" + table.name + "' without a vessel", "the name of a vessel that it starts along", "");
+    error(table.position, "wire '" + table.name + "' without a vessel", "the name of a vessel that it starts along",
+          "");
     return;
   }
   start_wire(*curve, *vessel, table.nodes > 0 ? table.nodes : vessel->view.nodes);
@@ -467,8 +476,8 @@ bool Builder::check_declaration(const Curve& curve, const ComponentChoice& choic
   }
   for (const SiteDeclaration& site : curve.declaration.sites) {
     const bool stencil_fits = site.stencil.size() == at(site.count * site.width);
-    const bool known = std::all_of(site.stencil.begin(), site.stencil.end(),
-                                   [&](int u) { return u >= -1 && u < curve.unknowns; });
+    const bool known =
+        std::all_of(site.stencil.begin(), site.stencil.end(), [&](int u) { return u >= -1 && u < curve.unknowns; });
     if (!stencil_fits || !known || site.values > 8 || site.width > 32) {
       return broken("declares a site whose stencil does not fit its unknowns");
     }
@@ -538,8 +547,9 @@ void Builder::sample_laws() {
       const SiteDeclaration* station = curve.site(Site::station);
       if (law.description.site == Site::station && !law.description.isotropic && composition_.dimension == 3 &&
           station != nullptr && station->values - (station->lengths_vary ? 2 : 0) < 3) {
-        error(choice.position, "energy '" + use.label + "' reads a strain vector that kinematics '" +
-                                   curve.kinematics_name + "' of '" + curve.name + "' does not have",
+        error(choice.position,
+              "energy '" + use.label + "' reads a strain vector that kinematics '" + curve.kinematics_name + "' of '" +
+                  curve.name + "' does not have",
               "a kinematics with material frames", "use kinematics = \"edge-frames\"");
       }
     }

@@ -61,11 +61,16 @@ Json provenance(const Session& session, const Registry& registry) {
 
 const char* manifold_name(Manifold manifold) {
   switch (manifold) {
-    case Manifold::real: return "R";
-    case Manifold::vector: return "R^n";
-    case Manifold::circle: return "S1";
-    case Manifold::direction: return "S2";
-    case Manifold::rotation: break;
+    case Manifold::real:
+      return "R";
+    case Manifold::vector:
+      return "R^n";
+    case Manifold::circle:
+      return "S1";
+    case Manifold::direction:
+      return "S2";
+    case Manifold::rotation:
+      break;
   }
   return "SO3";
 }
@@ -103,20 +108,21 @@ Json solver(const Session& session, const Solution& solution) {
                        {"step", finite(record.step)}});
   }
   const Seconds& seconds = session.seconds;
-  return {{"name", session.composition.solver.name},
-          {"claim", result.reason},
-          {"iterations", result.iterations},
-          {"factorizations", result.factorizations > 0 ? Json(result.factorizations) : Json(nullptr)},
-          {"evaluations", result.evaluations},
-          {"epochs", session.assembly->epochs()},
-          {"history", history},
-          {"seconds",
-           {{"load", seconds.load},
-            {"setup", seconds.setup},
-            {"solve", seconds.solve},
-            {"total", seconds.total},
-            {"evaluation", result.evaluation_seconds},
-            {"factorization", result.factorization_seconds > 0.0 ? Json(result.factorization_seconds) : Json(nullptr)}}}};
+  return {
+      {"name", session.composition.solver.name},
+      {"claim", result.reason},
+      {"iterations", result.iterations},
+      {"factorizations", result.factorizations > 0 ? Json(result.factorizations) : Json(nullptr)},
+      {"evaluations", result.evaluations},
+      {"epochs", session.assembly->epochs()},
+      {"history", history},
+      {"seconds",
+       {{"load", seconds.load},
+        {"setup", seconds.setup},
+        {"solve", seconds.solve},
+        {"total", seconds.total},
+        {"evaluation", result.evaluation_seconds},
+        {"factorization", result.factorization_seconds > 0.0 ? Json(result.factorization_seconds) : Json(nullptr)}}}};
 }
 
 Json certificate(const Certificate& c) {

@@ -104,13 +104,12 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
   }
   if (!status.ok()) solution.multipliers.assign(static_cast<std::size_t>(assembly.rows()), 0.0);
   if (status.ok()) {
-    status = certify(assembly, solution.q, solution.multipliers, session.composition.certificate,
-                     solution.solver.claim, solution.solver.reason, solution.certificate);
+    status = certify(assembly, solution.q, solution.multipliers, session.composition.certificate, solution.solver.claim,
+                     solution.solver.reason, solution.certificate);
   }
   if (!status.ok()) {
     solution.certificate.verdict = Verdict::failed;
-    solution.certificate.reason =
-        solution.solver.claim == Claim::failed ? solution.solver.reason : status.text;
+    solution.certificate.reason = solution.solver.claim == Claim::failed ? solution.solver.reason : status.text;
   }
   const ParameterValue* tolerance = session.composition.solver.parameters.find("tolerance");
   const Certificate& certificate = solution.certificate;

@@ -13,8 +13,8 @@
 namespace bowstring {
 
 struct Seconds {
-  double load = 0.0;    ///< composition read, plugins opened
-  double setup = 0.0;   ///< scene built, patterns found
+  double load = 0.0;   ///< composition read, plugins opened
+  double setup = 0.0;  ///< scene built, patterns found
   double solve = 0.0;
   double total = 0.0;
 };
@@ -41,7 +41,7 @@ struct Solution {
   std::vector<double> q, multipliers;
   SolverResult solver;
   Certificate certificate;
-  bool estimated_multipliers = false;   ///< the solver gave none
+  bool estimated_multipliers = false;  ///< the solver gave none
   std::vector<std::string> warnings;
 };
 

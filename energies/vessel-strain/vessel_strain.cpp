@@ -163,16 +163,18 @@ class VesselStrain final : public Energy {
     const std::string name = "vessel '" + std::string(curve.name) + "': ";
     if (!stretch_) {
       out.warnings.push_back(
-          name + "stretch-stiffness is 0, so nothing resists stretching along it: edges bunch up and may fold as "
-                 "meshes get finer and wires stiffer (planar iliac: stretch ratios 0.76…1.19 at 320 nodes, where EA = 11 N "
-                 "gives 0.89…0.92), and the peak displacement is that of EA = 0 (10.55 mm against 9.75 mm). A thin tube "
-                 "has EA = 2 EI/R²");
+          name +
+          "stretch-stiffness is 0, so nothing resists stretching along it: edges bunch up and may fold as "
+          "meshes get finer and wires stiffer (planar iliac: stretch ratios 0.76…1.19 at 320 nodes, where EA = 11 N "
+          "gives 0.89…0.92), and the peak displacement is that of EA = 0 (10.55 mm against 9.75 mm). A thin tube "
+          "has EA = 2 EI/R²");
     }
     if (curve.dimension == 3 && !torsion_) {
       out.warnings.push_back(
-          name + "torsional-stiffness is 0, so only the magnitude of the curvature is felt: curvature vectors may "
-                 "zigzag at mesh scale (helix: bending energy 0.07 N mm against 2.69 with frames; 257 iterations "
-                 "against 17 at 240 nodes). A thin tube has GJ = ⅔ EI");
+          name +
+          "torsional-stiffness is 0, so only the magnitude of the curvature is felt: curvature vectors may "
+          "zigzag at mesh scale (helix: bending energy 0.07 N mm against 2.69 with frames; 257 iterations "
+          "against 17 at 240 nodes). A thin tube has GJ = ⅔ EI");
     }
   }
 

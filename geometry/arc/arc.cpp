@@ -22,8 +22,7 @@ constexpr ParameterDeclaration schema[] = {
      .type = ParameterType::scalar,
      .unit = "rad",
      .default_text = nullptr,
-     .description =
-         "angle that the tangent turns from end to end; positive bends toward +y, negative toward -y",
+     .description = "angle that the tangent turns from end to end; positive bends toward +y, negative toward -y",
      .lower = -full_turn,
      .upper = full_turn},
     nodes_declaration,
@@ -47,11 +46,9 @@ class Arc final : public Geometry {
       const double angle = parameters_.scalar("angle");
       const double side = std::copysign(1.0, angle);
       LocalCurve curve;
-      for (const double turned :
-           even_stations(std::abs(angle), static_cast<int>(parameters_.integer("nodes")))) {
+      for (const double turned : even_stations(std::abs(angle), static_cast<int>(parameters_.integer("nodes")))) {
         const double half_chord = radius * std::sin(0.5 * turned);
-        curve.points.push_back(
-            {radius * std::sin(turned), side * 2.0 * half_chord * std::sin(0.5 * turned), 0.0});
+        curve.points.push_back({radius * std::sin(turned), side * 2.0 * half_chord * std::sin(0.5 * turned), 0.0});
       }
       curve.last_tangent = {{std::cos(angle), std::sin(angle), 0.0}};
       return place(curve, parameters_, dimension, out);
@@ -66,5 +63,5 @@ class Arc final : public Geometry {
 }  // namespace bowstring
 
 BOWSTRING_PLUGIN(bowstring::component<bowstring::Geometry, bowstring::Arc>(
-    bowstring::Kind::geometry, "arc",
-    "An arc of a circle that leaves the origin along +x and bends toward +y", bowstring::schema))
+    bowstring::Kind::geometry, "arc", "An arc of a circle that leaves the origin along +x and bends toward +y",
+    bowstring::schema))

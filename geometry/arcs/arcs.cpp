@@ -33,9 +33,8 @@ constexpr ParameterDeclaration segment_schema[] = {
      .type = ParameterType::scalar,
      .unit = "rad",
      .default_text = "0.0",
-     .description =
-         "direction of the bend about the tangent, from the +y of the start, carried along without twist, "
-         "toward +z",
+     .description = "direction of the bend about the tangent, from the +y of the start, carried along without twist, "
+                    "toward +z",
      .lower = -full_turn,
      .upper = full_turn},
     {.key = "name",
@@ -100,10 +99,9 @@ class Arcs final : public Geometry {
     std::string errors;
     for (std::size_t i = 0; i < items.size(); ++i) {
       if (items[i].scalar("bend") == 0.0 || items[i].scalar("plane") == 0.0) continue;
-      errors +=
-          (errors.empty() ? "" : "\n") + ("segment " + std::to_string(i + 1)) +
-          " bends out of the plane ('plane' is not 0) in a scene of dimension 2; expected plane = 0; give "
-          "'bend' a sign instead, positive toward +y, or set dimension = 3 in [scene]";
+      errors += (errors.empty() ? "" : "\n") + ("segment " + std::to_string(i + 1)) +
+                " bends out of the plane ('plane' is not 0) in a scene of dimension 2; expected plane = 0; give "
+                "'bend' a sign instead, positive toward +y, or set dimension = 3 in [scene]";
     }
     if (!errors.empty()) throw StatusError(Code::invalid_input, errors);
   }
@@ -116,5 +114,4 @@ class Arcs final : public Geometry {
 
 BOWSTRING_PLUGIN(bowstring::component<bowstring::Geometry, bowstring::Arcs>(
     bowstring::Kind::geometry, "arcs",
-    "Straight pieces and bends one after the other, with curvature that rises and falls smoothly",
-    bowstring::schema))
+    "Straight pieces and bends one after the other, with curvature that rises and falls smoothly", bowstring::schema))

@@ -16,8 +16,7 @@ constexpr ParameterDeclaration schema[] = {
      .type = ParameterType::path,
      .unit = "",
      .default_text = nullptr,
-     .description =
-         "comma-separated points: x_mm,y_mm[,z_mm][,radius_mm][,any point data], lines with # skipped"},
+     .description = "comma-separated points: x_mm,y_mm[,z_mm][,radius_mm][,any point data], lines with # skipped"},
     {.key = "nodes",
      .type = ParameterType::integer,
      .unit = "",
@@ -41,8 +40,7 @@ constexpr ParameterDeclaration schema[] = {
      .type = ParameterType::integer,
      .unit = "",
      .default_text = "5",
-     .description =
-         "degree of that spline, 3 or 5, and of the one through the points where only nodes are given",
+     .description = "degree of that spline, 3 or 5, and of the one through the points where only nodes are given",
      .lower = 3,
      .upper = 5},
 };
@@ -57,8 +55,8 @@ class Csv final : public Geometry {
         degree_(static_cast<int>(parameters.integer("smoothing-degree"))),
         nodes_(parameters.has("nodes") ? static_cast<int>(parameters.integer("nodes")) : 0) {
     if (degree_ != 3 && degree_ != 5) {
-      throw StatusError(Code::invalid_input, "'smoothing-degree' is " + std::to_string(degree_) +
-                                                 "; expected 3 or 5; give one of them");
+      throw StatusError(Code::invalid_input,
+                        "'smoothing-degree' is " + std::to_string(degree_) + "; expected 3 or 5; give one of them");
     }
   }
 
@@ -97,9 +95,8 @@ class Csv final : public Geometry {
     if (rows < static_cast<std::size_t>(degree_) + 1) {
       return Status::failure(Code::invalid_input,
                              file_ + ": " + std::to_string(rows) + " points; expected at least " +
-                                 std::to_string(degree_ + 1) + " for a spline of degree " +
-                                 std::to_string(degree_) + "; " +
-                                 (degree_ == 5 && rows > 3 ? "set smoothing-degree = 3" : "add rows") +
+                                 std::to_string(degree_ + 1) + " for a spline of degree " + std::to_string(degree_) +
+                                 "; " + (degree_ == 5 && rows > 3 ? "set smoothing-degree = 3" : "add rows") +
                                  ", or leave out 'nodes' and 'smoothing'");
     }
     std::vector<double> parameter = chord_parameters(table.points, dimension);
@@ -159,5 +156,5 @@ class Csv final : public Geometry {
 }  // namespace bowstring
 
 BOWSTRING_PLUGIN(bowstring::component<bowstring::Geometry, bowstring::Csv>(
-    bowstring::Kind::geometry, "csv",
-    "A centerline and its point data from a comma-separated file, smoothed or not", bowstring::schema))
+    bowstring::Kind::geometry, "csv", "A centerline and its point data from a comma-separated file, smoothed or not",
+    bowstring::schema))

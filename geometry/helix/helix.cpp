@@ -58,8 +58,8 @@ class Helix final : public Geometry {
       const double angle = two_pi * parameters_.scalar("turns");
       const double speed = std::hypot(chord, radius * angle);
       const auto tangent = [&](double phase) {
-        return Vector3{{chord / speed, -radius * angle / speed * std::sin(phase),
-                        radius * angle / speed * std::cos(phase)}};
+        return Vector3{
+            {chord / speed, -radius * angle / speed * std::sin(phase), radius * angle / speed * std::cos(phase)}};
       };
       LocalCurve curve;
       for (const double t : even_stations(1.0, static_cast<int>(parameters_.integer("nodes")))) {
@@ -79,5 +79,5 @@ class Helix final : public Geometry {
 }  // namespace bowstring
 
 BOWSTRING_PLUGIN(bowstring::component<bowstring::Geometry, bowstring::Helix>(
-    bowstring::Kind::geometry, "helix",
-    "A helix that winds about the x axis; its first node is at (0, radius, 0)", bowstring::schema))
+    bowstring::Kind::geometry, "helix", "A helix that winds about the x axis; its first node is at (0, radius, 0)",
+    bowstring::schema))

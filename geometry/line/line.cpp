@@ -28,8 +28,7 @@ class Line final : public Geometry {
     return guard([&] {
       const int nodes = static_cast<int>(parameters_.integer("nodes"));
       LocalCurve curve;
-      for (const double x : even_stations(parameters_.scalar("length"), nodes))
-        curve.points.push_back({{x, 0.0, 0.0}});
+      for (const double x : even_stations(parameters_.scalar("length"), nodes)) curve.points.push_back({{x, 0.0, 0.0}});
       return place(curve, parameters_, dimension, out);
     });
   }

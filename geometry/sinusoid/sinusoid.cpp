@@ -64,8 +64,7 @@ class Sinusoid final : public Geometry {
       std::vector<double> x = even_stations(chord, nodes);
       if (parameters_.text("sampling") == "uniform-arc") {
         const int panels = std::max(1, static_cast<int>(std::ceil(4.0 * periods)));
-        const ArcLength arc([&](double at) { return std::hypot(1.0, slope(at)); },
-                            even_stations(chord, panels + 1));
+        const ArcLength arc([&](double at) { return std::hypot(1.0, slope(at)); }, even_stations(chord, panels + 1));
         x = arc.even_parameters(nodes);
       }
       LocalCurve curve;
@@ -84,5 +83,4 @@ class Sinusoid final : public Geometry {
 }  // namespace bowstring
 
 BOWSTRING_PLUGIN(bowstring::component<bowstring::Geometry, bowstring::Sinusoid>(
-    bowstring::Kind::geometry, "sinusoid", "A sinusoid about the x axis, in the plane z = 0",
-    bowstring::schema))
+    bowstring::Kind::geometry, "sinusoid", "A sinusoid about the x axis, in the plane z = 0", bowstring::schema))

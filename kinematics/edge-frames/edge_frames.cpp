@@ -26,8 +26,8 @@ Status EdgeFrames::declare(const CurveView& curve, const Needs& needs, Kinematic
   return guard([&]() -> Status {
     mesh_ = make_curve_mesh(curve);
     if (Status status = check_curve(mesh_, needs); !status.ok()) return status;
-    manifold_ = curve.dimension == 2 ? Manifold::circle
-                                     : (needs.material_frames ? Manifold::rotation : Manifold::direction);
+    manifold_ =
+        curve.dimension == 2 ? Manifold::circle : (needs.material_frames ? Manifold::rotation : Manifold::direction);
     closed_edges_.clear();
     for (int i = 0; i < mesh_.edges(); ++i) {
       if (!mesh_.edge_held(i)) closed_edges_.push_back(i);
@@ -60,7 +60,8 @@ FieldDeclaration EdgeFrames::orientation_field(const Needs& needs, const std::ve
   field.start = transported_orientations(manifold_, edge_tangents(mesh_, mesh_.curve.start), first_frame_.data());
   for (int i = 0; i < mesh_.edges(); ++i) {
     field.station.push_back(mesh_.edge_middle(i));
-    field.fixed.insert(field.fixed.end(), at(tangent_count(manifold_, 1)), static_cast<char>(mesh_.edge_held(i) ? 1 : 0));
+    field.fixed.insert(field.fixed.end(), at(tangent_count(manifold_, 1)),
+                       static_cast<char>(mesh_.edge_held(i) ? 1 : 0));
   }
   return field;
 }
@@ -160,23 +161,44 @@ int EdgeFrames::length_unknown(int edge) const noexcept {
 
 Status EdgeFrames::evaluate(const SiteEvaluation& evaluation) const noexcept {
   switch (evaluation.site) {
-    case Site::node: evaluate_nodes(mesh_, position_, evaluation); return {};
-    case Site::frame: evaluate_frames(evaluation); return {};
-    case Site::edge: evaluate_edges(evaluation); return {};
-    case Site::length: evaluate_length(mesh_, length_, evaluation); return {};
+    case Site::node:
+      evaluate_nodes(mesh_, position_, evaluation);
+      return {};
+    case Site::frame:
+      evaluate_frames(evaluation);
+      return {};
+    case Site::edge:
+      evaluate_edges(evaluation);
+      return {};
+    case Site::length:
+      evaluate_length(mesh_, length_, evaluation);
+      return {};
     case Site::station:
       switch (manifold_) {
-        case Manifold::circle: evaluate_stations<PlanarOrientation>(evaluation); return {};
-        case Manifold::direction: evaluate_stations<DirectionOrientation>(evaluation); return {};
-        default: evaluate_stations<FrameOrientation>(evaluation); return {};
+        case Manifold::circle:
+          evaluate_stations<PlanarOrientation>(evaluation);
+          return {};
+        case Manifold::direction:
+          evaluate_stations<DirectionOrientation>(evaluation);
+          return {};
+        default:
+          evaluate_stations<FrameOrientation>(evaluation);
+          return {};
       }
     case Site::closure:
       switch (manifold_) {
-        case Manifold::circle: evaluate_closure<PlanarOrientation>(evaluation); return {};
-        case Manifold::direction: evaluate_closure<DirectionOrientation>(evaluation); return {};
-        default: evaluate_closure<FrameOrientation>(evaluation); return {};
+        case Manifold::circle:
+          evaluate_closure<PlanarOrientation>(evaluation);
+          return {};
+        case Manifold::direction:
+          evaluate_closure<DirectionOrientation>(evaluation);
+          return {};
+        default:
+          evaluate_closure<FrameOrientation>(evaluation);
+          return {};
       }
-    case Site::field: break;
+    case Site::field:
+      break;
   }
   return Status::failure(Code::unsupported, "edge-frames has no such site");
 }
@@ -238,8 +260,8 @@ void EdgeFrames::evaluate_closure(const SiteEvaluation& out) const noexcept {
     const int edge = closed_edges_[at(k)];
     const auto orientation = EdgeOrientation::load(q + orientation_.coordinate_of(edge));
     const LinearInLength length = closure_length(edge);
-    const double unknown = mesh_.stretching() ? q[edge_length_.coordinate_of(edge)]
-                                              : (mesh_.sliding() ? q[length_.coordinate] : 0.0);
+    const double unknown =
+        mesh_.stretching() ? q[edge_length_.coordinate_of(edge)] : (mesh_.sliding() ? q[length_.coordinate] : 0.0);
     const Vector<d> t = tangent(orientation);
     if (!out.values.empty()) {
       const double* p = q + position_.coordinate_of(edge);
@@ -286,8 +308,8 @@ Status EdgeFrames::sample(Span<const double> q, Span<const double> edge_coordina
       // The twist that directions carry is immaterial: frames of an untwisted curve are Bishop's.
       orientation = transported_orientations(manifold_, tangents, first_frame_.data());
     }
-    return sample_edges(mesh_, q.data() + position_.coordinate, frame_quaternions(manifold_, orientation), edge_coordinate,
-                        out);
+    return sample_edges(mesh_, q.data() + position_.coordinate, frame_quaternions(manifold_, orientation),
+                        edge_coordinate, out);
   });
 }
 

@@ -49,8 +49,8 @@ class EdgeFrames final : public Kinematics {
   CurveMesh mesh_;
   Manifold manifold_ = Manifold::circle;
   FieldSlot position_, orientation_, edge_length_, length_, held_tangent_;
-  std::vector<int> closed_edges_;      // those with closure rows
-  std::vector<double> first_frame_;    // coordinates of the first edge's orientation in State 1
+  std::vector<int> closed_edges_;    // those with closure rows
+  std::vector<double> first_frame_;  // coordinates of the first edge's orientation in State 1
 };
 
 }  // namespace bowstring

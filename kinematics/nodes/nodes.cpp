@@ -22,9 +22,9 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 template <int d>
 struct Side {
   Vector<d> tangent;
-  lie::Rotation frame;          ///< in space: first axis along the tangent
-  double length = 0.0;          ///< of an edge; 0 for a held tangent
-  Matrix<d - 1, d> turn;        ///< ∂α/∂e of an edge: α the tangent numbers of its direction, e its vector
+  lie::Rotation frame;    ///< in space: first axis along the tangent
+  double length = 0.0;    ///< of an edge; 0 for a held tangent
+  Matrix<d - 1, d> turn;  ///< ∂α/∂e of an edge: α the tangent numbers of its direction, e its vector
 
   bool is_edge() const noexcept { return length > 0.0; }
 };
@@ -66,8 +66,8 @@ StationStrain<2> strain_between(const Side<3>& earlier, const Side<3>& later) no
   return station_strain(direction(earlier), direction(later));
 }
 
-/// First unknown of each side within a station's stencil, L left out. Two edges: their three nodes; a held tangent stands
-/// before the first edge's nodes or after the last one's.
+/// First unknown of each side within a station's stencil, L left out. Two edges: their three nodes; a held tangent
+/// stands before the first edge's nodes or after the last one's.
 struct Columns {
   int earlier, later;
 };
@@ -160,7 +160,8 @@ SiteDeclaration Nodes::stations() const {
     int* stencil = site.stencil.data() + k * site.width;
     const auto set = [&](int orientation, int column) {
       const bool edge = orientation < mesh_.edges();
-      const int first = edge ? position_.unknown_of(orientation) : held_tangent_.unknown_of(orientation - mesh_.edges());
+      const int first =
+          edge ? position_.unknown_of(orientation) : held_tangent_.unknown_of(orientation - mesh_.edges());
       for (int j = 0; j < (edge ? 2 * d : d - 1); ++j) stencil[column + j] = first + j;
     };
     const Columns columns = columns_of(station, mesh_.edges(), d);
@@ -184,13 +185,20 @@ SiteDeclaration Nodes::edge_lengths() const {
 Status Nodes::evaluate(const SiteEvaluation& evaluation) const noexcept {
   const bool planar = mesh_.dimension() == 2;
   switch (evaluation.site) {
-    case Site::node: evaluate_nodes(mesh_, position_, evaluation); return {};
-    case Site::length: evaluate_length(mesh_, length_, evaluation); return {};
-    case Site::station: return planar ? evaluate_stations<2>(evaluation) : evaluate_stations<3>(evaluation);
+    case Site::node:
+      evaluate_nodes(mesh_, position_, evaluation);
+      return {};
+    case Site::length:
+      evaluate_length(mesh_, length_, evaluation);
+      return {};
+    case Site::station:
+      return planar ? evaluate_stations<2>(evaluation) : evaluate_stations<3>(evaluation);
     case Site::edge:
-    case Site::closure: return planar ? evaluate_edge_lengths<2>(evaluation) : evaluate_edge_lengths<3>(evaluation);
+    case Site::closure:
+      return planar ? evaluate_edge_lengths<2>(evaluation) : evaluate_edge_lengths<3>(evaluation);
     case Site::frame:
-    case Site::field: break;
+    case Site::field:
+      break;
   }
   return Status::failure(Code::unsupported, "nodes has no such site");
 }

@@ -12,7 +12,7 @@ namespace bowstring {
 struct ElfContents {
   std::string abi_tag;                ///< of section `.bowstring.abi`; "" where there is none
   std::vector<std::string> exported;  ///< defined dynamic symbols that other libraries can bind to, sorted
-  std::vector<std::string> unique;    ///< those of them that are GNU_UNIQUE: one for the whole process, RTLD_LOCAL or not
+  std::vector<std::string> unique;  ///< those of them that are GNU_UNIQUE: one for the whole process, RTLD_LOCAL or not
 };
 
 /// Reads the section headers of a 64-bit little-endian ELF file held in memory. Symbols that every linker makes

@@ -31,9 +31,8 @@ Status not_a_plugin(const std::string& library, const std::string& found) {
 /// Lower-case words joined by hyphens: "wire-bending", "rkmk4".
 bool well_formed(std::string_view name) {
   if (name.empty() || name.front() == '-' || name.back() == '-') return false;
-  return std::all_of(name.begin(), name.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
-  });
+  return std::all_of(name.begin(), name.end(),
+                     [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-'; });
 }
 
 /// What is wrong with one component, or "".
@@ -56,12 +55,15 @@ std::string fault(const ComponentDescriptor& component) {
 
 Status check_descriptor(const std::string& library, const PluginDescriptor& plugin) {
   if (plugin.magic != plugin_magic || plugin.size != sizeof(PluginDescriptor)) {
-    return failure(library, "exports a '" + std::string(plugin_symbol) + "' that is no plugin descriptor of this bowstring",
+    return failure(library,
+                   "exports a '" + std::string(plugin_symbol) + "' that is no plugin descriptor of this bowstring",
                    rebuild_advice);
   }
   if (plugin.interface_version != interface_version) {
-    return failure(library, "has interface version " + std::to_string(plugin.interface_version) + ", this bowstring " +
-                                std::to_string(interface_version), rebuild_advice);
+    return failure(library,
+                   "has interface version " + std::to_string(plugin.interface_version) + ", this bowstring " +
+                       std::to_string(interface_version),
+                   rebuild_advice);
   }
   if (plugin.abi_tag == nullptr) return failure(library, "has a descriptor without ABI tag", rebuild_advice);
   if (Status status = check_abi(library, plugin.abi_tag, "its descriptor"); !status.ok()) return status;
@@ -99,7 +101,8 @@ std::string host_abi_tag() { return make_abi_tag().text; }
 Status check_abi(const std::string& library, const std::string& tag, const std::string& where) {
   const std::string host = host_abi_tag();
   if (tag == host) return {};
-  return failure(library, "was built for another ABI: " + where + " says '" + tag + "', this bowstring is '" + host + "'",
+  return failure(library,
+                 "was built for another ABI: " + where + " says '" + tag + "', this bowstring is '" + host + "'",
                  "rebuild it against this bowstring with the compiler and standard library of that tag, or take the "
                  "bowstring that it was built for");
 }

@@ -161,7 +161,8 @@ Status PluginHost::open(Library& library) {
   if (Status status = open_library(sidecar.library, &plugin); !status.ok()) return status;
   if (sidecar.interface_version != plugin->interface_version || sidecar.components != offered_components(*plugin)) {
     return Status::failure(Code::failed, "plugin library '" + sidecar.library + "' is not what its sidecar '" +
-                                             library.sidecar_file + "' says; write the sidecar again with ninja or "
+                                             library.sidecar_file +
+                                             "' says; write the sidecar again with ninja or "
                                              "bowstring-sidecar, or install the two together");
   }
   library.open = plugin;

@@ -16,9 +16,9 @@ std::string running_executable();
 /// Where plugins are looked for, in this order. Each entry is a folder: the sidecars in it are taken, and those that
 /// a `bowstring-plugins.json` in it lists. The working directory counts only where an entry names it.
 struct PluginHostOptions {
-  std::vector<std::string> command_line_path;  ///< --plugin-path
-  std::vector<std::string> composition_path;   ///< `plugin-path` of the composition, absolute
-  std::string environment_path;                ///< BOWSTRING_PLUGIN_PATH: folders separated by colons
+  std::vector<std::string> command_line_path;          ///< --plugin-path
+  std::vector<std::string> composition_path;           ///< `plugin-path` of the composition, absolute
+  std::string environment_path;                        ///< BOWSTRING_PLUGIN_PATH: folders separated by colons
   std::string executable_path = running_executable();  ///< the binary whose own plugins come last; "": none
 };
 

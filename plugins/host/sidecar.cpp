@@ -67,9 +67,8 @@ Status write_sidecar(const Sidecar& sidecar, const std::string& file) {
                  {"abi_tag", sidecar.abi_tag},
                  {"components", Json::array()}};
     for (const OfferedComponent& component : sidecar.components) {
-      json["components"].push_back({{"kind", kind_name(component.kind)},
-                                    {"name", component.name},
-                                    {"description", component.description}});
+      json["components"].push_back(
+          {{"kind", kind_name(component.kind)}, {"name", component.name}, {"description", component.description}});
     }
     const std::string temporary = file + ".part" + std::to_string(::getpid());
     std::ofstream stream(temporary, std::ios::binary);

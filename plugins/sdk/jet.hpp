@@ -140,8 +140,7 @@ struct Jet {
     // A factor of zero wins over the infinite power of a zero base: a² and a¹ are smooth there.
     const double first = exponent;
     const double second = exponent * (exponent - 1.0);
-    return compose(a, std::pow(a.value, exponent),
-                   first == 0.0 ? 0.0 : first * std::pow(a.value, exponent - 1.0),
+    return compose(a, std::pow(a.value, exponent), first == 0.0 ? 0.0 : first * std::pow(a.value, exponent - 1.0),
                    second == 0.0 ? 0.0 : second * std::pow(a.value, exponent - 2.0));
   }
   friend Jet pow(double base, const Jet& b) {

@@ -36,20 +36,62 @@ namespace plugin_detail {
 
 template <class Interface>
 struct KindOf;
-template <> struct KindOf<Geometry> { static constexpr Kind value = Kind::geometry; };
-template <> struct KindOf<Kinematics> { static constexpr Kind value = Kind::kinematics; };
-template <> struct KindOf<Energy> { static constexpr Kind value = Kind::energy; };
-template <> struct KindOf<Constraint> { static constexpr Kind value = Kind::constraint; };
-template <> struct KindOf<Enforcement> { static constexpr Kind value = Kind::enforcement; };
-template <> struct KindOf<Solver> { static constexpr Kind value = Kind::solver; };
-template <> struct KindOf<Integrator> { static constexpr Kind value = Kind::integrator; };
-template <> struct KindOf<GroundCost> { static constexpr Kind value = Kind::ground_cost; };
-template <> struct KindOf<Transport> { static constexpr Kind value = Kind::transport; };
-template <> struct KindOf<Projection> { static constexpr Kind value = Kind::projection; };
-template <> struct KindOf<Loss> { static constexpr Kind value = Kind::loss; };
-template <> struct KindOf<Residual> { static constexpr Kind value = Kind::residual; };
-template <> struct KindOf<Readout> { static constexpr Kind value = Kind::readout; };
-template <> struct KindOf<Writer> { static constexpr Kind value = Kind::writer; };
+template <>
+struct KindOf<Geometry> {
+  static constexpr Kind value = Kind::geometry;
+};
+template <>
+struct KindOf<Kinematics> {
+  static constexpr Kind value = Kind::kinematics;
+};
+template <>
+struct KindOf<Energy> {
+  static constexpr Kind value = Kind::energy;
+};
+template <>
+struct KindOf<Constraint> {
+  static constexpr Kind value = Kind::constraint;
+};
+template <>
+struct KindOf<Enforcement> {
+  static constexpr Kind value = Kind::enforcement;
+};
+template <>
+struct KindOf<Solver> {
+  static constexpr Kind value = Kind::solver;
+};
+template <>
+struct KindOf<Integrator> {
+  static constexpr Kind value = Kind::integrator;
+};
+template <>
+struct KindOf<GroundCost> {
+  static constexpr Kind value = Kind::ground_cost;
+};
+template <>
+struct KindOf<Transport> {
+  static constexpr Kind value = Kind::transport;
+};
+template <>
+struct KindOf<Projection> {
+  static constexpr Kind value = Kind::projection;
+};
+template <>
+struct KindOf<Loss> {
+  static constexpr Kind value = Kind::loss;
+};
+template <>
+struct KindOf<Residual> {
+  static constexpr Kind value = Kind::residual;
+};
+template <>
+struct KindOf<Readout> {
+  static constexpr Kind value = Kind::readout;
+};
+template <>
+struct KindOf<Writer> {
+  static constexpr Kind value = Kind::writer;
+};
 
 template <class Interface, class Implementation>
 Status create(const ParameterSet& parameters, void** out) {
@@ -65,7 +107,8 @@ template <class Interface, class Implementation>
 constexpr ComponentDescriptor describe(Kind kind, const char* name, const char* description,
                                        const ParameterDeclaration* parameters, int parameter_count) {
   if (kind != KindOf<Interface>::value) throw "the component's kind is not that of its interface class";
-  return {kind, name, description, parameters, parameter_count, &create<Interface, Implementation>, &destroy<Interface>};
+  return {
+      kind, name, description, parameters, parameter_count, &create<Interface, Implementation>, &destroy<Interface>};
 }
 
 }  // namespace plugin_detail
@@ -88,19 +131,15 @@ constexpr ComponentDescriptor component(Kind kind, const char* name, const char*
 
 /// Defines the one symbol that a plugin exports, and its ABI tag in a section of its own. The descriptor points to
 /// that very section, so that no linker drops it.
-#define BOWSTRING_PLUGIN(...)                                                                          \
-  namespace {                                                                                          \
-  [[gnu::section(".bowstring.abi"), gnu::used]] const bowstring::AbiTag bowstring_abi_tag =            \
-      bowstring::make_abi_tag();                                                                       \
-  constexpr bowstring::ComponentDescriptor bowstring_components[] = {__VA_ARGS__};                     \
-  }                                                                                                    \
-  extern "C" {                                                                                         \
-  [[gnu::visibility("default")]] extern const bowstring::PluginDescriptor bowstring_plugin;            \
-  const bowstring::PluginDescriptor bowstring_plugin = {                                               \
-      bowstring::plugin_magic,                                                                         \
-      static_cast<std::uint32_t>(sizeof(bowstring::PluginDescriptor)),                                 \
-      bowstring::interface_version,                                                                    \
-      bowstring_abi_tag.text,                                                                          \
-      bowstring_components,                                                                            \
-      static_cast<int>(sizeof(bowstring_components) / sizeof(bowstring_components[0]))};               \
+#define BOWSTRING_PLUGIN(...)                                                                                          \
+  namespace {                                                                                                          \
+  [[gnu::section(".bowstring.abi"), gnu::used]] const bowstring::AbiTag bowstring_abi_tag = bowstring::make_abi_tag(); \
+  constexpr bowstring::ComponentDescriptor bowstring_components[] = {__VA_ARGS__};                                     \
+  }                                                                                                                    \
+  extern "C" {                                                                                                         \
+  [[gnu::visibility("default")]] extern const bowstring::PluginDescriptor bowstring_plugin;                            \
+  const bowstring::PluginDescriptor bowstring_plugin = {                                                               \
+      bowstring::plugin_magic,      static_cast<std::uint32_t>(sizeof(bowstring::PluginDescriptor)),                   \
+      bowstring::interface_version, bowstring_abi_tag.text,                                                            \
+      bowstring_components,         static_cast<int>(sizeof(bowstring_components) / sizeof(bowstring_components[0]))}; \
   }

@@ -62,9 +62,15 @@ class TemplatedLaw final : public Law {
   Status evaluate(const LawBatch& batch) const noexcept override {
     return guard([&]() -> Status {
       switch (batch.dimension) {
-        case 1: evaluate_places<1>(batch); return {};
-        case 2: evaluate_places<2>(batch); return {};
-        case 3: evaluate_places<3>(batch); return {};
+        case 1:
+          evaluate_places<1>(batch);
+          return {};
+        case 2:
+          evaluate_places<2>(batch);
+          return {};
+        case 3:
+          evaluate_places<3>(batch);
+          return {};
         default:
           return Status::failure(Code::unsupported, "a templated law reads 1 to 3 numbers, this place has " +
                                                         std::to_string(batch.dimension));
@@ -78,11 +84,13 @@ class TemplatedLaw final : public Law {
   template <int n>
   void evaluate_places(const LawBatch& batch) const {
     const bool derivatives = batch.stress != nullptr || batch.modulus != nullptr;
-    const bool sensitivities = batch.parameter_energy != nullptr || batch.parameter_stress != nullptr ||
-                               batch.parameter_modulus != nullptr;
+    const bool sensitivities =
+        batch.parameter_energy != nullptr || batch.parameter_stress != nullptr || batch.parameter_modulus != nullptr;
     for (int i = 0; i < batch.count; ++i) {
-      if (derivatives) differentiate<n>(batch, i);
-      else if (batch.energy != nullptr) batch.energy[i] = energy_at<double, n>(batch, i, none, none);
+      if (derivatives)
+        differentiate<n>(batch, i);
+      else if (batch.energy != nullptr)
+        batch.energy[i] = energy_at<double, n>(batch, i, none, none);
       if (sensitivities) differentiate_parameters<n>(batch, i);
     }
   }

@@ -23,14 +23,16 @@ Status check_exports(const std::string& library) {
   if (Status status = read_file(library, bytes); !status.ok()) return status;
   if (Status status = read_elf(bytes, contents); !status.ok()) return status;
   if (!contents.unique.empty()) {
-    return Status::failure(Code::failed, "it has GNU_UNIQUE symbols, which all plugins of a process share; compile "
-                                         "with -fno-gnu-unique and link with the SDK's plugin.map:" +
-                                             listed(contents.unique));
+    return Status::failure(Code::failed,
+                           "it has GNU_UNIQUE symbols, which all plugins of a process share; compile "
+                           "with -fno-gnu-unique and link with the SDK's plugin.map:" +
+                               listed(contents.unique));
   }
   if (contents.exported != std::vector<std::string>{plugin_symbol}) {
-    return Status::failure(Code::failed, "a plugin exports the one symbol bowstring_plugin; compile with "
-                                         "-fvisibility=hidden and link with the SDK's plugin.map; it exports " +
-                                             (contents.exported.empty() ? "none" : listed(contents.exported)));
+    return Status::failure(Code::failed,
+                           "a plugin exports the one symbol bowstring_plugin; compile with "
+                           "-fvisibility=hidden and link with the SDK's plugin.map; it exports " +
+                               (contents.exported.empty() ? "none" : listed(contents.exported)));
   }
   return {};
 }
@@ -42,8 +44,7 @@ Status write(const std::string& library, const std::string& output) {
   }
   const PluginDescriptor* plugin = nullptr;
   if (Status status = open_library(library, &plugin); !status.ok()) return status;
-  return write_sidecar({library, plugin->interface_version, plugin->abi_tag, offered_components(*plugin)},
-                                  output);
+  return write_sidecar({library, plugin->interface_version, plugin->abi_tag, offered_components(*plugin)}, output);
 }
 
 }  // namespace

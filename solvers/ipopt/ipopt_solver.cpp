@@ -20,7 +20,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double unbounded = 2e19;       // what Ipopt takes for infinity
+constexpr double unbounded = 2e19;  // what Ipopt takes for infinity
 constexpr double first_barrier = 0.1;
 
 constexpr ParameterDeclaration schema[] = {
@@ -54,8 +54,9 @@ constexpr ParameterDeclaration schema[] = {
      .type = ParameterType::scalar,
      .unit = "",
      .default_text = "0.5",
-     .description = "share of its clearance that a wire node may move, relative to its wall, in one step; 0 switches the "
-                    "guard off, and soft wires may then tunnel through the wall",
+     .description =
+         "share of its clearance that a wire node may move, relative to its wall, in one step; 0 switches the "
+         "guard off, and soft wires may then tunnel through the wall",
      .lower = 0.0},
 };
 
@@ -85,8 +86,14 @@ class ChartProgram final : public Ipopt::TNLP {
  public:
   ChartProgram(Problem& problem, EuclideanProblem& chart, const Settings& settings, const SolverContext& context,
                SolverResult& result, Clock::time_point begin)
-      : problem_(problem), chart_(chart), settings_(settings), context_(context), result_(result), begin_(begin),
-        x(static_cast<std::size_t>(problem.unknowns())), q_(static_cast<std::size_t>(problem.coordinates())),
+      : problem_(problem),
+        chart_(chart),
+        settings_(settings),
+        context_(context),
+        result_(result),
+        begin_(begin),
+        x(static_cast<std::size_t>(problem.unknowns())),
+        q_(static_cast<std::size_t>(problem.coordinates())),
         rows_(static_cast<std::size_t>(problem.rows())) {
     chart.start(x);
   }
@@ -145,7 +152,8 @@ class ChartProgram final : public Ipopt::TNLP {
     if (values == nullptr) {
       const SparsityPattern pattern = problem_.jacobian_pattern();
       for (int r = 0; r < m; ++r) {
-        for (int k = pattern.begin[static_cast<std::size_t>(r)]; k < pattern.begin[static_cast<std::size_t>(r) + 1]; ++k) {
+        for (int k = pattern.begin[static_cast<std::size_t>(r)]; k < pattern.begin[static_cast<std::size_t>(r) + 1];
+             ++k) {
           row[k] = r;
           column[k] = pattern.inner[static_cast<std::size_t>(k)];
         }
@@ -163,7 +171,8 @@ class ChartProgram final : public Ipopt::TNLP {
     if (values == nullptr) {
       const SparsityPattern pattern = problem_.hessian_pattern();
       for (int c = 0; c < n; ++c) {
-        for (int k = pattern.begin[static_cast<std::size_t>(c)]; k < pattern.begin[static_cast<std::size_t>(c) + 1]; ++k) {
+        for (int k = pattern.begin[static_cast<std::size_t>(c)]; k < pattern.begin[static_cast<std::size_t>(c) + 1];
+             ++k) {
           row[k] = pattern.inner[static_cast<std::size_t>(k)];
           column[k] = c;
         }
@@ -179,8 +188,8 @@ class ChartProgram final : public Ipopt::TNLP {
   }
 
   bool intermediate_callback(Ipopt::AlgorithmMode mode, Ipopt::Index, Ipopt::Number energy, Ipopt::Number inf_pr,
-                             Ipopt::Number inf_du, Ipopt::Number mu, Ipopt::Number, Ipopt::Number,
-                             Ipopt::Number, Ipopt::Number alpha_pr, Ipopt::Index, const Ipopt::IpoptData* data,
+                             Ipopt::Number inf_du, Ipopt::Number mu, Ipopt::Number, Ipopt::Number, Ipopt::Number,
+                             Ipopt::Number alpha_pr, Ipopt::Index, const Ipopt::IpoptData* data,
                              Ipopt::IpoptCalculatedQuantities* quantities) override {
     barrier = mu;
     // The first callback of a restart repeats the iterate that the run before ended with.
@@ -292,16 +301,26 @@ struct Verdict {
 
 Verdict verdict(Ipopt::ApplicationReturnStatus status) {
   switch (status) {
-    case Ipopt::Solve_Succeeded: return {Claim::optimal, "Ipopt reached its tolerance"};
-    case Ipopt::Solved_To_Acceptable_Level: return {Claim::optimal, "Ipopt made no more progress near a solution"};
-    case Ipopt::Infeasible_Problem_Detected: return {Claim::infeasible, "Ipopt converged to a point of local infeasibility"};
-    case Ipopt::Search_Direction_Becomes_Too_Small: return {Claim::stalled, "Ipopt's search direction became too small"};
-    case Ipopt::Diverging_Iterates: return {Claim::diverged, "Ipopt's iterates grow without bound"};
-    case Ipopt::Maximum_Iterations_Exceeded: return {Claim::stalled, "the iteration limit was reached"};
-    case Ipopt::Restoration_Failed: return {Claim::stalled, "Ipopt's restoration phase failed"};
-    case Ipopt::Error_In_Step_Computation: return {Claim::stalled, "Ipopt could not compute a step"};
-    case Ipopt::Invalid_Number_Detected: return {Claim::failed, "an evaluation gave no finite number"};
-    default: return {Claim::failed, "Ipopt ended with return code " + std::to_string(static_cast<int>(status))};
+    case Ipopt::Solve_Succeeded:
+      return {Claim::optimal, "Ipopt reached its tolerance"};
+    case Ipopt::Solved_To_Acceptable_Level:
+      return {Claim::optimal, "Ipopt made no more progress near a solution"};
+    case Ipopt::Infeasible_Problem_Detected:
+      return {Claim::infeasible, "Ipopt converged to a point of local infeasibility"};
+    case Ipopt::Search_Direction_Becomes_Too_Small:
+      return {Claim::stalled, "Ipopt's search direction became too small"};
+    case Ipopt::Diverging_Iterates:
+      return {Claim::diverged, "Ipopt's iterates grow without bound"};
+    case Ipopt::Maximum_Iterations_Exceeded:
+      return {Claim::stalled, "the iteration limit was reached"};
+    case Ipopt::Restoration_Failed:
+      return {Claim::stalled, "Ipopt's restoration phase failed"};
+    case Ipopt::Error_In_Step_Computation:
+      return {Claim::stalled, "Ipopt could not compute a step"};
+    case Ipopt::Invalid_Number_Detected:
+      return {Claim::failed, "an evaluation gave no finite number"};
+    default:
+      return {Claim::failed, "Ipopt ended with return code " + std::to_string(static_cast<int>(status))};
   }
 }
 
@@ -347,8 +366,7 @@ class IpoptSolver final : public Solver {
     double barrier = first_barrier;
     for (bool warm = false;; warm = true) {
       const std::unique_ptr<EuclideanProblem> chart = problem.chart(out.q);
-      Ipopt::SmartPtr<ChartProgram> program =
-          new ChartProgram(problem, *chart, settings_, context, out, begin);
+      Ipopt::SmartPtr<ChartProgram> program = new ChartProgram(problem, *chart, settings_, context, out, begin);
       program->multipliers = multipliers;
       Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(false);
       application->RethrowNonIpoptException(true);

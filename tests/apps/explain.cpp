@@ -40,27 +40,31 @@ void check_parts(const std::string& text, const std::vector<std::string>& parts)
 
 TEST_CASE("explain names curves, fields with their reasons, rows, and the plugins that are opened") {
   const std::string text = successful({"explain", scene("helical-iliac-full.toml")});
-  check_parts(text, {
-      "Helical iliac with a full vessel\n",
-      "scene of dimension 3\n",
-      "vessel 'iliac': 60 nodes, 177.128 mm, ends pinned and pinned; every edge has its own length\n",
-      "kinematics edge-frames, with material frames because vessel-strain of 'iliac' has torsional-stiffness > 0\n",
-      "60 × vector            174 unknown, 6 fixed: every kinematics has node positions\n",
-      "59 × rotation (SO3)    177 unknown, 0 fixed: vessel-strain of 'iliac' has torsional-stiffness > 0\n",
-      "59 × number             59 unknown, 0 fixed: the curve stretches\n",
-      "wire 'lunderquist': 60 nodes, 177.128 mm, ends clamped and pinned; length slides through the sheath: one unknown L\n",
-      "59 × direction (S2)    118 unknown, 0 fixed: edge-frames has one orientation per edge\n",
-      "held-tangent       1 × direction (S2)      0 unknown, 2 fixed: a clamped end holds the tangent at its node\n",
-      "rows: 354 equalities, 58 inequalities\n",
-      "edge closure of 'iliac' (177)\n",
-      "constraint 'lumen' (58)\n",
-      "unknowns: 703, eliminated because they are held: 14\n",
-      "solved by ipopt with rows by kkt\n",
-      "plugins opened, and no others\n",
-  });
-  for (const char* plugin : {"constraint/node-wise-contact", "energy/anchoring", "energy/axial-tension",
-                             "energy/vessel-strain", "energy/wire-bending", "enforcement/kkt", "geometry/helix",
-                             "kinematics/edge-frames", "solver/ipopt"}) {
+  check_parts(
+      text,
+      {
+          "Helical iliac with a full vessel\n",
+          "scene of dimension 3\n",
+          "vessel 'iliac': 60 nodes, 177.128 mm, ends pinned and pinned; every edge has its own length\n",
+          "kinematics edge-frames, with material frames because vessel-strain of 'iliac' has torsional-stiffness > 0\n",
+          "60 × vector            174 unknown, 6 fixed: every kinematics has node positions\n",
+          "59 × rotation (SO3)    177 unknown, 0 fixed: vessel-strain of 'iliac' has torsional-stiffness > 0\n",
+          "59 × number             59 unknown, 0 fixed: the curve stretches\n",
+          "wire 'lunderquist': 60 nodes, 177.128 mm, ends clamped and pinned; length slides through the sheath: one "
+          "unknown L\n",
+          "59 × direction (S2)    118 unknown, 0 fixed: edge-frames has one orientation per edge\n",
+          "held-tangent       1 × direction (S2)      0 unknown, 2 fixed: a clamped end holds the tangent at its "
+          "node\n",
+          "rows: 354 equalities, 58 inequalities\n",
+          "edge closure of 'iliac' (177)\n",
+          "constraint 'lumen' (58)\n",
+          "unknowns: 703, eliminated because they are held: 14\n",
+          "solved by ipopt with rows by kkt\n",
+          "plugins opened, and no others\n",
+      });
+  for (const char* plugin :
+       {"constraint/node-wise-contact", "energy/anchoring", "energy/axial-tension", "energy/vessel-strain",
+        "energy/wire-bending", "enforcement/kkt", "geometry/helix", "kinematics/edge-frames", "solver/ipopt"}) {
     CHECK_MESSAGE(contains(text, std::string("  ") + plugin + "  /"), plugin);
   }
   CHECK_FALSE(contains(text, "kinematics/nodes"));
@@ -75,17 +79,17 @@ TEST_CASE("a planar scene has no third coordinate and no twist") {
 }
 
 TEST_CASE("node positions alone have no orientations") {
-  const std::string text = successful({"explain", scene("planar-iliac-smooth.toml"), "--set",
-                                       "wire.lunderquist.kinematics=\"nodes\"", "--set",
-                                       "vessel.iliac.kinematics=\"nodes\""});
+  const std::string text =
+      successful({"explain", scene("planar-iliac-smooth.toml"), "--set", "wire.lunderquist.kinematics=\"nodes\"",
+                  "--set", "vessel.iliac.kinematics=\"nodes\""});
   check_parts(text, {"kinematics/nodes  /"});
   CHECK_FALSE(contains(text, "orientation"));
   CHECK_FALSE(contains(text, "edge-frames"));
 }
 
 TEST_CASE("explain says what has no effect and what to beware of") {
-  const std::string text =
-      successful({"explain", scene("planar-iliac.toml"), "--set", "energy.vessel-strain.torsional-stiffness=\"133 N mm^2\""});
+  const std::string text = successful(
+      {"explain", scene("planar-iliac.toml"), "--set", "energy.vessel-strain.torsional-stiffness=\"133 N mm^2\""});
   check_parts(text, {"warning: vessel 'iliac': stretch-stiffness is 0", "without effect: ", "torsional-stiffness"});
 }
 

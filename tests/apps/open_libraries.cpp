@@ -45,9 +45,11 @@ TEST_CASE("the plugins that a composition names are open in the process, and no 
   REQUIRE(session != nullptr);
   std::set<std::string> named;
   const std::pair<Kind, const char*> components[] = {
-      {Kind::geometry, "sinusoid"},    {Kind::kinematics, "edge-frames"},      {Kind::energy, "wire-bending"},
-      {Kind::energy, "vessel-strain"}, {Kind::energy, "anchoring"},            {Kind::energy, "axial-tension"},
-      {Kind::enforcement, "kkt"},      {Kind::constraint, "node-wise-contact"}, {Kind::solver, "ipopt"},
+      {Kind::geometry, "sinusoid"},   {Kind::kinematics, "edge-frames"},
+      {Kind::energy, "wire-bending"}, {Kind::energy, "vessel-strain"},
+      {Kind::energy, "anchoring"},    {Kind::energy, "axial-tension"},
+      {Kind::enforcement, "kkt"},     {Kind::constraint, "node-wise-contact"},
+      {Kind::solver, "ipopt"},
   };
   for (const auto& [kind, name] : components) named.insert(host.origin(kind, name).file);
   CHECK(open_plugins() == named);

@@ -22,7 +22,8 @@ namespace {
 
 /// The planar scene with one more energy.
 void write_scene(const TemporaryFolder& folder, const std::string& energy) {
-  folder.write("scene.toml", shipped_scene("planar-iliac.toml") + "\n[[energy]]\ntype = \"" + energy + "\"\non = \"iliac\"\n");
+  folder.write("scene.toml",
+               shipped_scene("planar-iliac.toml") + "\n[[energy]]\ntype = \"" + energy + "\"\non = \"iliac\"\n");
 }
 
 CommandResult solve_with(const TemporaryFolder& folder, const std::string& plugins,
@@ -53,18 +54,20 @@ TEST_CASE("exit 3: a library file that is no plugin") {
   plugins.write_sidecar("notes.so", "energy", "test-notes", host_abi_tag());
   const std::string error = failure("test-notes", plugins);
   CHECK(contains(error, "scene.toml:"));
-  CHECK(contains(error, "'DIR/notes.so' is not a plugin library: it is not an ELF file; expected a shared library whose "
-                        "source ends with BOWSTRING_PLUGIN\n"));
+  CHECK(contains(error,
+                 "'DIR/notes.so' is not a plugin library: it is not an ELF file; expected a shared library whose "
+                 "source ends with BOWSTRING_PLUGIN\n"));
 }
 
 TEST_CASE("exit 3: a library of another ABI") {
   const TemporaryFolder plugins;
   plugins.take_fixture("foreign-abi");
   plugins.write_sidecar("bowstring_foreign-abi.so", "energy", "test-foreign", "bowstring-999/other");
-  CHECK(contains(failure("test-foreign", plugins),
-                 "plugin library 'DIR/bowstring_foreign-abi.so' was built for another ABI: its sidecar says "
-                 "'bowstring-999/other', this bowstring is 'TAG'; rebuild it against this bowstring with the compiler and "
-                 "standard library of that tag, or take the bowstring that it was built for\n"));
+  CHECK(contains(
+      failure("test-foreign", plugins),
+      "plugin library 'DIR/bowstring_foreign-abi.so' was built for another ABI: its sidecar says "
+      "'bowstring-999/other', this bowstring is 'TAG'; rebuild it against this bowstring with the compiler and "
+      "standard library of that tag, or take the bowstring that it was built for\n"));
 }
 
 TEST_CASE("exit 3: a factory that throws") {

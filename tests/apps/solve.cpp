@@ -156,9 +156,9 @@ TEST_CASE("warnings go to stderr and into the document") {
 
 TEST_CASE("exit 1 where it did not converge, and the document is written all the same") {
   const TemporaryFolder folder;
-  const CommandResult result = bowstring_command(
-      folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--set", "solver.max-iterations=2", "--out",
-                      "result.json", "--write", "csv=result.csv"});
+  const CommandResult result =
+      bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--set", "solver.max-iterations=2",
+                                        "--out", "result.json", "--write", "csv=result.csv"});
   CHECK(result.exit_code == 1);
   CHECK(contains(result.out, "stalled: "));
   CHECK(entries(folder.path()) == std::vector<std::string>{"result.csv", "result.json"});
@@ -188,9 +188,11 @@ TEST_CASE("files that cannot be written are the caller's mistake") {
       bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--out", "no/result.json"});
   CHECK(result.exit_code == 2);
   CHECK(contains(result.err, "error: --out: cannot write 'no/result.json': No such file or directory\n"));
-  result = bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--write", "csv=no/result.csv"});
+  result =
+      bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--write", "csv=no/result.csv"});
   CHECK(result.exit_code == 2);
-  CHECK(contains(result.err, "error: --write csv=no/result.csv: cannot write 'no/result.csv': No such file or directory\n"));
+  CHECK(contains(result.err,
+                 "error: --write csv=no/result.csv: cannot write 'no/result.csv': No such file or directory\n"));
   CHECK(entries(folder.path()).empty());
 }
 
@@ -206,7 +208,8 @@ TEST_CASE("no output may destroy the composition, or another output") {
   CHECK(result.exit_code == 2);
   CHECK(result.err == "error: --out: './scene.toml' is what this composition reads; expected another file\n");
   for (const char* file : {"planar-iliac.toml", "points.csv"}) {
-    result = bowstring_command(folder.path(), {"solve", "scene.toml", "--set", csv, "--write", "csv=" + std::string(file)});
+    result =
+        bowstring_command(folder.path(), {"solve", "scene.toml", "--set", csv, "--write", "csv=" + std::string(file)});
     CHECK(result.exit_code == 2);
     CHECK(contains(result.err, "' is what this composition reads; expected another file\n"));
   }
@@ -221,7 +224,8 @@ TEST_CASE("no output may destroy the composition, or another output") {
 TEST_CASE("devices and pipes are never replaced, and links stay links") {
   const TemporaryFolder folder;
   REQUIRE(::mkfifo((folder.path() + "/pipe").c_str(), 0600) == 0);
-  CommandResult result = bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--out", "pipe"});
+  CommandResult result =
+      bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--out", "pipe"});
   CHECK(result.exit_code == 2);
   CHECK(contains(result.err, "error: --out: cannot write 'pipe': it is no regular file\n"));
   folder.write("target.json", "old");
@@ -271,7 +275,8 @@ TEST_CASE("two runs give the same bits") {
   const TemporaryFolder folder;
   Json documents[2];
   for (Json& document : documents) {
-    const CommandResult result = bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--json"});
+    const CommandResult result =
+        bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--json"});
     REQUIRE(result.exit_code == 0);
     document = Json::parse(result.out);
     document["solver"].erase("seconds");
@@ -285,9 +290,9 @@ TEST_CASE("a kinematics is swapped by one line and gives the same equilibrium") 
   int k = 0;
   for (const char* name : {"edge-frames", "nodes"}) {
     const std::string value = std::string("=\"") + name + "\"";
-    const CommandResult result =
-        bowstring_command(folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--json", "--set",
-                                          "wire.lunderquist.kinematics" + value, "--set", "vessel.iliac.kinematics" + value});
+    const CommandResult result = bowstring_command(
+        folder.path(), {"solve", scene("planar-iliac-smooth.toml"), "--json", "--set",
+                        "wire.lunderquist.kinematics" + value, "--set", "vessel.iliac.kinematics" + value});
     REQUIRE_MESSAGE(result.exit_code == 0, name);
     CHECK(contains(result.out, std::string("bowstring_") + name + ".so"));
     energy[k++] = total(result);

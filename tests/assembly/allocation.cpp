@@ -34,8 +34,12 @@ long allocations_of(const std::function<void()>& call) {
 /// What a solver holds.
 struct Buffers {
   explicit Buffers(const Problem& problem)
-      : q(at(problem.coordinates())), x(at(problem.unknowns())), gradient(x), rows(at(problem.rows())),
-        jacobian(at(problem.jacobian_pattern().entries())), hessian(at(problem.hessian_pattern().entries())),
+      : q(at(problem.coordinates())),
+        x(at(problem.unknowns())),
+        gradient(x),
+        rows(at(problem.rows())),
+        jacobian(at(problem.jacobian_pattern().entries())),
+        hessian(at(problem.hessian_pattern().entries())),
         multipliers(random_numbers(problem.rows(), 3)) {
     evaluation.energy = &energy;
     evaluation.gradient = gradient;
@@ -71,7 +75,8 @@ TEST_CASE("the counter sees what plugins and kernel allocate") {
   const auto session = session_of(SmallScene{});
   std::vector<RowReport> report;
   const std::vector<double> q = session->scene->start_coordinates();
-  CHECK(allocations_of([&] { REQUIRE(session->scene->constraints[0].constraint->report(*session->assembly, report).ok()); }) > 0);
+  CHECK(allocations_of(
+            [&] { REQUIRE(session->scene->constraints[0].constraint->report(*session->assembly, report).ok()); }) > 0);
   CHECK(allocations_of([&] { session->assembly->chart(q); }) > 0);
 }
 

@@ -125,7 +125,8 @@ std::vector<double> chart_point(const Session& session, EuclideanProblem& chart,
   for (const FieldEntry& entry : session.assembly->entries()) {
     if (entry.block < 0) continue;
     const double scale = is_curved(entry.manifold) ? amplitude : 0.3 * amplitude;
-    for (int u = session.assembly->blocks().begin[at(entry.block)]; u < session.assembly->blocks().begin[at(entry.block) + 1]; ++u) {
+    for (int u = session.assembly->blocks().begin[at(entry.block)];
+         u < session.assembly->blocks().begin[at(entry.block) + 1]; ++u) {
       x[at(u)] += scale * delta[at(u)];
     }
   }
@@ -177,7 +178,9 @@ TEST_CASE("gradient, Jacobian and Lagrangian Hessian are those of differences: t
   }
 }
 
-TEST_CASE("gradient, Jacobian and Lagrangian Hessian are those of differences: a wire of nodes that turns back by nearly pi") {
+TEST_CASE(
+    "gradient, Jacobian and Lagrangian Hessian are those of differences: a wire of nodes that turns back by nearly "
+    "pi") {
   for (const int dimension : {2, 3}) {
     CAPTURE(dimension);
     SmallScene scene = dimension == 2 ? planar("nodes", "nodes") : spatial("nodes", "nodes");

@@ -178,7 +178,8 @@ std::vector<double> dense_symmetric(const SparsityPattern& pattern, const std::v
   return out;
 }
 
-std::vector<double> dense_rows(const SparsityPattern& pattern, const std::vector<double>& values, int rows, int columns) {
+std::vector<double> dense_rows(const SparsityPattern& pattern, const std::vector<double>& values, int rows,
+                               int columns) {
   std::vector<double> out(at(rows * columns), 0.0);
   for (int r = 0; r < rows; ++r) {
     for (int k = pattern.begin[at(r)]; k < pattern.begin[at(r) + 1]; ++k) {

@@ -12,7 +12,7 @@ struct LocalProblem {
   int unknowns = 0, rows = 0;
   std::function<double(const std::vector<double>&)> energy;
   std::function<std::vector<double>(const std::vector<double>&)> row_values;
-  std::vector<double> multipliers;   ///< of the Lagrangian factor·E + λᵀr
+  std::vector<double> multipliers;  ///< of the Lagrangian factor·E + λᵀr
   double factor = 1.0;
   std::vector<double> gradient, jacobian, hessian;
 };
@@ -35,6 +35,7 @@ void check_derivatives(const LocalProblem& local, DifferenceSteps steps = {}, Di
 
 /// Lower triangle by columns → dense, and rows → dense.
 std::vector<double> dense_symmetric(const SparsityPattern& pattern, const std::vector<double>& values, int n);
-std::vector<double> dense_rows(const SparsityPattern& pattern, const std::vector<double>& values, int rows, int columns);
+std::vector<double> dense_rows(const SparsityPattern& pattern, const std::vector<double>& values, int rows,
+                               int columns);
 
 }  // namespace bowstring::testing

@@ -75,7 +75,8 @@ struct LoneSite {
   void fill(std::vector<double>& y, unsigned seed) const {
     const std::vector<double> numbers = random_numbers(static_cast<int>(y.size()), seed);
     for (std::size_t k = 0; k < y.size(); ++k) {
-      const bool length = declaration.lengths_vary && static_cast<int>(k) % declaration.values >= declaration.values - 2;
+      const bool length =
+          declaration.lengths_vary && static_cast<int>(k) % declaration.values >= declaration.values - 2;
       y[k] = length ? 2.0 + 0.5 * numbers[k] : numbers[k];
     }
   }
@@ -113,7 +114,9 @@ void check_chain_rule(LoneSite& site, LawAssembly& law) {
   };
   for (int k = 0; k < places * v; ++k) {
     const Answer a = at_step(k, -2 * h), b = at_step(k, -h), c = at_step(k, h), d = at_step(k, 2 * h);
-    const auto slope = [&](double fa, double fb, double fc, double fd) { return (fa - fd + 8.0 * (fc - fb)) / (12.0 * h); };
+    const auto slope = [&](double fa, double fb, double fc, double fd) {
+      return (fa - fd + 8.0 * (fc - fb)) / (12.0 * h);
+    };
     CHECK(claimed.stress[at(k)] == doctest::Approx(slope(a.energy, b.energy, c.energy, d.energy)).epsilon(1e-8));
     const int place = k / v;
     for (int l = 0; l < v; ++l) {

@@ -37,10 +37,11 @@ TEST_CASE("a Hessian pattern holds exactly the coupled pairs of blocks, and find
     const BlockLayout layout = random_layout(12, random);
     const int n = layout.begin.back();
     HessianPattern pattern;
-    std::vector<char> stored(at(n * n), 0);   // dense, both triangles
+    std::vector<char> stored(at(n * n), 0);  // dense, both triangles
     const auto couple = [&](int a, int b) {
       for (int i = layout.begin[at(a)]; i < layout.begin[at(a) + 1]; ++i) {
-        for (int j = layout.begin[at(b)]; j < layout.begin[at(b) + 1]; ++j) stored[at(i * n + j)] = stored[at(j * n + i)] = 1;
+        for (int j = layout.begin[at(b)]; j < layout.begin[at(b) + 1]; ++j)
+          stored[at(i * n + j)] = stored[at(j * n + i)] = 1;
       }
     };
     for (int b = 0; b < layout.blocks(); ++b) couple(b, b);

@@ -32,24 +32,28 @@ std::string SmallScene::text() const {
   const std::string s_shape = R"({ type = "sinusoid", chord = "40 mm", amplitude = "4 mm", periods = 1, nodes = 8 })";
   const std::string coil = R"({ type = "helix", chord = "40 mm", radius = "6 mm", turns = 0.6, nodes = 8 })";
   const std::string shape = !geometry.empty() ? geometry : (dimension == 2 ? s_shape : coil);
-  std::string out = "schema = 1\n[scene]\ndimension = " + std::to_string(dimension) +
-                    "\n[[vessel]]\nname = \"vessel\"\ngeometry = " + shape + "\nradius = " + radius +
-                    "\nkinematics = \"" + vessel_kinematics + "\"\nends = " + vessel_ends +
-                    "\n[[wire]]\nname = \"wire\"\nvessel = \"vessel\"\nradius = \"0.4 mm\"\nnodes = " +
-                    std::to_string(wire_nodes) + "\nkinematics = \"" + wire_kinematics + "\"\nends = " + wire_ends +
-                    "\n[[energy]]\ntype = \"wire-bending\"\non = \"wire\"\nbending-stiffness = \"65 N mm^2\"\n"
-                    "[[energy]]\ntype = \"vessel-strain\"\non = \"vessel\"\nbending-stiffness = \"40 N mm^2\"\n"
-                    "stretch-stiffness = \"11 N\"\n";
+  std::string out =
+      "schema = 1\n[scene]\ndimension = " + std::to_string(dimension) +
+      "\n[[vessel]]\nname = \"vessel\"\ngeometry = " + shape + "\nradius = " + radius + "\nkinematics = \"" +
+      vessel_kinematics + "\"\nends = " + vessel_ends +
+      "\n[[wire]]\nname = \"wire\"\nvessel = \"vessel\"\nradius = \"0.4 mm\"\nnodes = " + std::to_string(wire_nodes) +
+      "\nkinematics = \"" + wire_kinematics + "\"\nends = " + wire_ends +
+      "\n[[energy]]\ntype = \"wire-bending\"\non = \"wire\"\nbending-stiffness = \"65 N mm^2\"\n"
+      "[[energy]]\ntype = \"vessel-strain\"\non = \"vessel\"\nbending-stiffness = \"40 N mm^2\"\n"
+      "stretch-stiffness = \"11 N\"\n";
   if (vessel_frames) out += "torsional-stiffness = \"25 N mm^2\"\n";
   out += "[[energy]]\ntype = \"anchoring\"\non = \"vessel\"\nstiffness = \"0.05 N/mm^2\"\n";
   if (wire_frames) {
-    out += "[[energy]]\nname = \"wire-torsion\"\ntype = \"vessel-strain\"\non = \"wire\"\nbending-stiffness = \"5 N mm^2\"\n"
-           "torsional-stiffness = \"9 N mm^2\"\n";
+    out +=
+        "[[energy]]\nname = \"wire-torsion\"\ntype = \"vessel-strain\"\non = \"wire\"\nbending-stiffness = \"5 N "
+        "mm^2\"\n"
+        "torsional-stiffness = \"9 N mm^2\"\n";
   }
   if (tension) out += "[[energy]]\ntype = \"axial-tension\"\non = \"wire\"\ntension = \"3 N\"\n";
   if (!contact.empty()) {
-    out += "[[constraint]]\nname = \"lumen\"\ntype = \"node-wise-contact\"\non = [\"wire\", \"vessel\"]\nwindow = 20\n" +
-           contact + "\n";
+    out +=
+        "[[constraint]]\nname = \"lumen\"\ntype = \"node-wise-contact\"\non = [\"wire\", \"vessel\"]\nwindow = 20\n" +
+        contact + "\n";
   }
   return out + "[solver]\ntype = \"ipopt\"\n";
 }

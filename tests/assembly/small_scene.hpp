@@ -14,13 +14,13 @@ inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// A wire in a vessel, small enough for dense differences. Texts are TOML.
 struct SmallScene {
   int dimension = 2;
-  std::string geometry;                                ///< "" : a gentle S in the plane, part of a helix in space
+  std::string geometry;  ///< "" : a gentle S in the plane, part of a helix in space
   std::string radius = R"({ table = [["0 mm", "3 mm"], ["20 mm", "4 mm"], ["60 mm", "3.5 mm"]] })";
-  int wire_nodes = 7;                                  ///< of a vessel with 8
+  int wire_nodes = 7;  ///< of a vessel with 8
   std::string vessel_kinematics = "edge-frames", wire_kinematics = "edge-frames";
   std::string vessel_ends = R"(["pinned", "pinned"])", wire_ends = R"(["pinned", "pinned"])";
-  std::string contact = R"(centerline = "spline")";    ///< keys of the constraint; "": no constraint
-  bool vessel_frames = false, wire_frames = false;     ///< torsional stiffness, in space
+  std::string contact = R"(centerline = "spline")";  ///< keys of the constraint; "": no constraint
+  bool vessel_frames = false, wire_frames = false;   ///< torsional stiffness, in space
   bool tension = true;
 
   std::string text() const;

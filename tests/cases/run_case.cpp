@@ -67,7 +67,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-void expect(const Json& document, const std::string& run, const std::string& path, const toml::table& wanted, Tally& tally) {
+void expect(const Json& document, const std::string& run, const std::string& path, const toml::table& wanted,
+            Tally& tally) {
   const std::string name = run + ": " + path;
   const Json* found = lookup(document, path);
   if (found == nullptr) return tally.check(false, name + " is not in the result");
@@ -77,15 +78,17 @@ void expect(const Json& document, const std::string& run, const std::string& pat
   }
   if (const auto text = wanted["contains"].value<std::string>()) {
     const std::string value = found->dump();
-    return tally.check(value.find(*text) != std::string::npos, name + " contains '" + *text + "': " + value.substr(0, 300));
+    return tally.check(value.find(*text) != std::string::npos,
+                       name + " contains '" + *text + "': " + value.substr(0, 300));
   }
   if (!found->is_number()) return tally.check(false, name + " is not a number: " + found->dump());
   const double value = found->get<double>();
   if (const auto target = wanted["value"].value<double>()) {
-    const double tolerance = wanted["relative"].value<double>() ? *wanted["relative"].value<double>() * std::fabs(*target)
-                                                                : wanted["absolute"].value_or(0.0);
-    tally.check(std::fabs(value - *target) <= tolerance, name + " = " + number(value) + ", expected " + number(*target) +
-                                                             " ± " + number(tolerance));
+    const double tolerance = wanted["relative"].value<double>()
+                                 ? *wanted["relative"].value<double>() * std::fabs(*target)
+                                 : wanted["absolute"].value_or(0.0);
+    tally.check(std::fabs(value - *target) <= tolerance,
+                name + " = " + number(value) + ", expected " + number(*target) + " ± " + number(tolerance));
   }
   if (const auto most = wanted["at-most"].value<double>()) {
     tally.check(value <= *most, name + " = " + number(value) + ", at most " + number(*most));
@@ -163,7 +166,8 @@ std::vector<std::string> names(const toml::table& table) {
 }
 
 /// Values of a path in the named runs; empty where one of them was skipped or has no number.
-std::vector<double> gather(const std::map<std::string, Json>& results, const toml::table& table, const std::string& path) {
+std::vector<double> gather(const std::map<std::string, Json>& results, const toml::table& table,
+                           const std::string& path) {
   std::vector<double> out;
   for (const std::string& name : names(table)) {
     const auto found = results.find(name);
@@ -181,8 +185,9 @@ void check_agreement(const std::map<std::string, Json>& results, const toml::tab
   const double relative = table["relative"].value_or(0.0);
   double largest = 0.0;
   for (const double value : values) largest = std::max(largest, std::fabs(value / values.front() - 1.0));
-  tally.check(values.front() != 0.0 && largest <= relative,
-              path + " of " + std::to_string(values.size()) + " runs agrees to " + number(largest) + ", expected " + number(relative));
+  tally.check(values.front() != 0.0 && largest <= relative, path + " of " + std::to_string(values.size()) +
+                                                                " runs agrees to " + number(largest) + ", expected " +
+                                                                number(relative));
 }
 
 void check_order(const std::map<std::string, Json>& results, const toml::table& table, Tally& tally) {
@@ -240,7 +245,8 @@ int main(int argc, char** argv) {
                 q["peak_displacement_mm"].dump().c_str(), q["wire_length_mm"].dump().c_str(),
                 q["contact_count"].dump().c_str(), q["contact_force_N"].dump().c_str());
     if (const toml::table* expected = run["expect"].as_table()) {
-      for (const auto& [path, wanted] : *expected) expect(document, name, std::string(path.str()), *wanted.as_table(), tally);
+      for (const auto& [path, wanted] : *expected)
+        expect(document, name, std::string(path.str()), *wanted.as_table(), tally);
     }
     results[name] = document;
   }

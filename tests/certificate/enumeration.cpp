@@ -75,9 +75,8 @@ Eigen::VectorXd enumerated(const LeastSquares& problem) {
       if (place[at(r)] < 0 || (set >> place[at(r)] & 1u) != 0u) chosen.push_back(r);
     }
     const Eigen::VectorXd multipliers = solve_with(problem, chosen);
-    const bool admissible = std::all_of(chosen.begin(), chosen.end(), [&](int r) {
-      return !problem.is_signed[at(r)] || multipliers[r] >= 0.0;
-    });
+    const bool admissible = std::all_of(chosen.begin(), chosen.end(),
+                                        [&](int r) { return !problem.is_signed[at(r)] || multipliers[r] >= 0.0; });
     const double residual = problem.residual(multipliers);
     if (admissible && residual < smallest) smallest = residual, best = multipliers;
   }

@@ -11,7 +11,7 @@ namespace {
 
 struct Fold {
   double smallest_stretch = 1e300;
-  bool turned_back = false;   ///< an edge by more than 90 degrees against its neighbour
+  bool turned_back = false;  ///< an edge by more than 90 degrees against its neighbour
 };
 
 Fold measured_fold(const Session& session, const std::vector<double>& q) {
@@ -34,12 +34,12 @@ TEST_CASE("a stiff wire in a vessel without stretch stiffness never ends as conv
   for (const char* kinematics : {"edge-frames", "nodes"}) {
     CAPTURE(std::string(kinematics));
     const std::string quoted = std::string("\"") + kinematics + "\"";
-    SolvedScene scene = solved(session_of_file("planar-iliac-smooth.toml",
-                                               {{"energy.wire-bending.bending-stiffness", "\"6132 N mm^2\""},
-                                                {"energy.vessel-strain.stretch-stiffness", "\"0 N\""},
-                                                {"vessel.iliac.geometry.nodes", "160"},
-                                                {"vessel.iliac.kinematics", quoted},
-                                                {"wire.lunderquist.kinematics", quoted}}));
+    SolvedScene scene = solved(
+        session_of_file("planar-iliac-smooth.toml", {{"energy.wire-bending.bending-stiffness", "\"6132 N mm^2\""},
+                                                     {"energy.vessel-strain.stretch-stiffness", "\"0 N\""},
+                                                     {"vessel.iliac.geometry.nodes", "160"},
+                                                     {"vessel.iliac.kinematics", quoted},
+                                                     {"wire.lunderquist.kinematics", quoted}}));
     const Certificate& certificate = scene.solution.certificate;
     const Fold fold = measured_fold(*scene.session, scene.solution.q);
     INFO(certificate.reason);

@@ -48,9 +48,10 @@ Rows rows_of(Session& session, const std::vector<double>& q) {
 TEST_CASE("at a solution the estimated multipliers are the solver's, to 1e-6 N") {
   const std::vector<std::pair<const char*, std::vector<Override>>> scenes = {
       {"planar-iliac-smooth.toml", {{"vessel.iliac.geometry.nodes", "40"}}},
-      {"planar-iliac-smooth.toml", {{"vessel.iliac.geometry.nodes", "40"},
-                                    {"vessel.iliac.kinematics", "nodes"},
-                                    {"wire.lunderquist.kinematics", "nodes"}}},
+      {"planar-iliac-smooth.toml",
+       {{"vessel.iliac.geometry.nodes", "40"},
+        {"vessel.iliac.kinematics", "nodes"},
+        {"wire.lunderquist.kinematics", "nodes"}}},
       {"helical-iliac-full.toml", {{"vessel.iliac.geometry.nodes", "30"}}},
       {"tortuous-iliac.toml", {{"vessel.iliac.geometry.nodes", "100"}}}};
   for (const auto& [name, variant] : scenes) {

@@ -282,8 +282,7 @@ TEST_CASE("where thresholds are missed as well, a fold is told all the same") {
   }
   REQUIRE(session->assembly->accept(q).ok());
   const std::vector<double> none(at(session->assembly->rows()), 0.0);
-  const Certificate found =
-      certified(*session->assembly, q, none, CertificateTable(), Claim::optimal, claim_text);
+  const Certificate found = certified(*session->assembly, q, none, CertificateTable(), Claim::optimal, claim_text);
   CHECK(found.verdict == Verdict::stalled);
   CHECK(contains(found.reason, "stationarity"));
   CHECK(contains(found.reason, "has folded"));
@@ -330,8 +329,7 @@ TEST_CASE("a length on its bound is no equilibrium, and what the bound holds is 
 TEST_CASE("tunnelled from one limb of a hairpin into the other: the place is where the wire leaves the lumen") {
   SmallScene small;
   const std::string limb_text = R"({ length = "40 mm" })", bend = R"({ length = "60 mm", bend = "180 deg" })";
-  small.geometry =
-      R"({ type = "arcs", nodes = 29, segments = [)" + limb_text + ", " + bend + ", " + limb_text + "] }";
+  small.geometry = R"({ type = "arcs", nodes = 29, segments = [)" + limb_text + ", " + bend + ", " + limb_text + "] }";
   small.radius = "\"4 mm\"";
   small.vessel_kinematics = small.wire_kinematics = "nodes";
   small.wire_nodes = 29;
@@ -405,8 +403,9 @@ TEST_CASE("infeasible: a wire that has to lie in two rigid vessels at once") {
   text.insert(text.find("[[wire]]"),
               "[[vessel]]\nname = \"straight\"\ngeometry = { type = \"line\", length = \"60 mm\", nodes = 20 }\n"
               "radius = \"3 mm\"\nrigid = true\n");
-  text.insert(text.find("[solver]"), "[[constraint]]\nname = \"second\"\ntype = \"node-wise-contact\"\n"
-                                     "on = [\"wire\", \"straight\"]\nwindow = 20\n");
+  text.insert(text.find("[solver]"),
+              "[[constraint]]\nname = \"second\"\ntype = \"node-wise-contact\"\n"
+              "on = [\"wire\", \"straight\"]\nwindow = 20\n");
   const auto certificate_with = [&](const std::string& guard) {
     return solved(session_of_text(text + "step-guard = " + guard + "\n")).solution.certificate;
   };
@@ -442,8 +441,7 @@ TEST_CASE("a solver's word is no proof, and its failure is a verdict with its na
     CHECK(largest_difference(solution.multipliers, known.multipliers) <= 1e-5);
   }
   SUBCASE("a status that is no success") {
-    const Solution solution =
-        solved_by_answer(*session, Status::failure(Code::failed, "it broke"), Claim::optimal, {});
+    const Solution solution = solved_by_answer(*session, Status::failure(Code::failed, "it broke"), Claim::optimal, {});
     CHECK(solution.certificate.verdict == Verdict::failed);
     CHECK(contains(solution.certificate.reason, "solver 'ipopt': it broke"));
     CHECK(solution.q == start);

@@ -63,7 +63,8 @@ TEST_CASE("supports and foundation balance to 1e-6 N") {
   check_balance("tortuous-iliac.toml", 0.02, {});
 }
 
-TEST_CASE("supports and foundation balance on a real artery" * doctest::skip(std::getenv("BOWSTRING_DATA") == nullptr)) {
+TEST_CASE("supports and foundation balance on a real artery" *
+          doctest::skip(std::getenv("BOWSTRING_DATA") == nullptr)) {
   const std::string file = std::string(std::getenv("BOWSTRING_DATA")) + "/vmr_0110/left_smoothed_200.csv";
   check_balance("tortuous-iliac.toml", 0.02,
                 {{"vessel.iliac.geometry", "{ type = \"csv\", file = \"" + file + "\" }"},

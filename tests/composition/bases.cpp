@@ -39,12 +39,15 @@ tension = "1 N"
 
 TEST_CASE("a chain of bases, each relative to its own file, the nearest to the user winning") {
   Workbench bench;
-  bench.write("a/first.toml", "schema = 1\nplugin-path = \"plug\"\n[scene]\ndimension = 3\n[[vessel]]\nname = \"v\"\n"
-                              "geometry = { type = \"csv\", file = \"one.csv\" }\nradius = 5\n");
-  bench.write("b/second.toml", "schema = 1\nbase = \"../a/first.toml\"\n[solver]\ntolerance = 1e-7\n"
-                               "max-iterations = 9\n[set]\n\"vessel.v.radius\" = 6\n");
-  bench.write("third.toml", "schema = 1\nbase = \"b/second.toml\"\nplugin-path = [\"x\", \"/y\"]\n[solver]\n"
-                            "tolerance = 1e-6\n[set]\n\"vessel.v.geometry.coordinates\" = \"RAS\"\n");
+  bench.write("a/first.toml",
+              "schema = 1\nplugin-path = \"plug\"\n[scene]\ndimension = 3\n[[vessel]]\nname = \"v\"\n"
+              "geometry = { type = \"csv\", file = \"one.csv\" }\nradius = 5\n");
+  bench.write("b/second.toml",
+              "schema = 1\nbase = \"../a/first.toml\"\n[solver]\ntolerance = 1e-7\n"
+              "max-iterations = 9\n[set]\n\"vessel.v.radius\" = 6\n");
+  bench.write("third.toml",
+              "schema = 1\nbase = \"b/second.toml\"\nplugin-path = [\"x\", \"/y\"]\n[solver]\n"
+              "tolerance = 1e-6\n[set]\n\"vessel.v.geometry.coordinates\" = \"RAS\"\n");
   const CompositionOutcome outcome = bench.load("third.toml");
   REQUIRE(texts(outcome.errors) == Texts{});
   const Composition& scene = *outcome.composition;
@@ -53,15 +56,16 @@ TEST_CASE("a chain of bases, each relative to its own file, the nearest to the u
   CHECK(scene.vessels[0].geometry.parameters.text("coordinates") == "RAS");
   CHECK(scene.solver.parameters.scalar("tolerance") == 1e-6);
   CHECK(scene.solver.parameters.integer("max-iterations") == 9);
-  CHECK(composition_plugin_path("third.toml") == Texts{(bench.folder() / "x").string(), "/y",
-                                                       (bench.folder() / "a/plug").string()});
+  CHECK(composition_plugin_path("third.toml") ==
+        Texts{(bench.folder() / "x").string(), "/y", (bench.folder() / "a/plug").string()});
   CHECK(composition_plugin_path("absent.toml").empty());
 }
 
 TEST_CASE("an error in a base stands at its place in the base, before none of the user's own") {
   Workbench bench;
-  bench.write("base.toml", "schema = 1\n[scene]\ndimension = 3\n[[vessel]]\nname = \"v\"\ncolour = 1\n"
-                           "geometry = { type = \"csv\", file = \"one.csv\" }\n");
+  bench.write("base.toml",
+              "schema = 1\n[scene]\ndimension = 3\n[[vessel]]\nname = \"v\"\ncolour = 1\n"
+              "geometry = { type = \"csv\", file = \"one.csv\" }\n");
   CHECK(bench.errors("schema = 1\nbase = \"base.toml\"\n[set]\n\"vessel.v.radius\" = \"0 mm\"\n"
                      "\"vessel.v.geometry.coordinates\" = \"RSA\"\n") ==
         Texts{"scene.toml:4:21: 'radius' of vessel 'v' is 0 mm, out of bounds; expected more than 0 mm; write "

@@ -42,29 +42,28 @@ stiffness = 0.03
 stifness = 0.03
 [solver]
 max-iterations = 2.5
-)") ==
-        Texts{
-            "scene.toml:6:41: wrong unit: 'chord' of geometry 'sinusoid' of vessel 'iliac' is text \"150 N\"; expected "
-            "a quantity in mm, more than 0; write \"150 mm\"",
-            "scene.toml:6:62: 'amplitude' of geometry 'sinusoid' of vessel 'iliac' is number nan, which is not finite; "
-            "expected a finite number; write \"<number> mm\"",
-            "scene.toml:6:75: 'nodes' of geometry 'sinusoid' of vessel 'iliac' is 2, out of bounds; expected at least "
-            "3; write a larger number",
-            "scene.toml:9:8: duplicate name: wire 'iliac', after the vessel at scene.toml:4:1; expected a name for "
-            "each; rename one of the two",
-            "scene.toml:10:10: unknown vessel 'ilac' in 'vessel' of wire 'iliac'; expected one of: iliac; did you "
-            "mean 'iliac'?",
-            "scene.toml:11:10: 'radius' of wire 'iliac' is 0, out of bounds; expected more than 0 mm; "
-            "write a larger number",
-            "scene.toml:13:8: unknown energy 'anchorin'; expected one of: anchoring, axial-tension, point-load, "
-            "vessel-strain, wire-bending; did you mean 'anchoring'?",
-            "scene.toml:18:13: ambiguous unit: 'stiffness' of energy 'anchoring' is the bare number 0.03; expected a "
-            "quantity in N/mm^2 or N/mm; write \"0.03 N/mm^2\" or \"0.03 N/mm\", which mean different things",
-            "scene.toml:19:1: unknown key 'stifness' in energy 'anchoring'; expected one of: type, name, on, "
-            "stiffness; did you mean 'stiffness'?",
-            "scene.toml:21:18: 'max-iterations' of solver 'ipopt' is number 2.5; expected a whole number, at least 1; "
-            "write max-iterations = <whole number>",
-        });
+)") == Texts{
+           "scene.toml:6:41: wrong unit: 'chord' of geometry 'sinusoid' of vessel 'iliac' is text \"150 N\"; expected "
+           "a quantity in mm, more than 0; write \"150 mm\"",
+           "scene.toml:6:62: 'amplitude' of geometry 'sinusoid' of vessel 'iliac' is number nan, which is not finite; "
+           "expected a finite number; write \"<number> mm\"",
+           "scene.toml:6:75: 'nodes' of geometry 'sinusoid' of vessel 'iliac' is 2, out of bounds; expected at least "
+           "3; write a larger number",
+           "scene.toml:9:8: duplicate name: wire 'iliac', after the vessel at scene.toml:4:1; expected a name for "
+           "each; rename one of the two",
+           "scene.toml:10:10: unknown vessel 'ilac' in 'vessel' of wire 'iliac'; expected one of: iliac; did you "
+           "mean 'iliac'?",
+           "scene.toml:11:10: 'radius' of wire 'iliac' is 0, out of bounds; expected more than 0 mm; "
+           "write a larger number",
+           "scene.toml:13:8: unknown energy 'anchorin'; expected one of: anchoring, axial-tension, point-load, "
+           "vessel-strain, wire-bending; did you mean 'anchoring'?",
+           "scene.toml:18:13: ambiguous unit: 'stiffness' of energy 'anchoring' is the bare number 0.03; expected a "
+           "quantity in N/mm^2 or N/mm; write \"0.03 N/mm^2\" or \"0.03 N/mm\", which mean different things",
+           "scene.toml:19:1: unknown key 'stifness' in energy 'anchoring'; expected one of: type, name, on, "
+           "stiffness; did you mean 'stiffness'?",
+           "scene.toml:21:18: 'max-iterations' of solver 'ipopt' is number 2.5; expected a whole number, at least 1; "
+           "write max-iterations = <whole number>",
+       });
 }
 
 TEST_CASE("a file that cannot be read") {
@@ -133,8 +132,9 @@ TEST_CASE("what belongs to a later version is said to") {
                  "geometry = { type = \"csv\" }\nends = [{ type = \"free\", move = [1, 0] }, \"pinned\"]\n") +
       "[start]\n[[step]]\n[[loss]]\n";
   const std::string known = "expected one of: name, vessel, ends, kinematics, nodes, radius; remove it";
-  const std::string tables = "expected one of: schema, title, base, plugin-path, set, scene, vessel, wire, energy, "
-                             "constraint, enforcement, solver, certificate; remove it";
+  const std::string tables =
+      "expected one of: schema, title, base, plugin-path, set, scene, vessel, wire, energy, "
+      "constraint, enforcement, solver, certificate; remove it";
   CHECK(bench.errors(text) ==
         Texts{"scene.toml:12:1: key 'length' in wire 'w' is not available in this version; " + known,
               "scene.toml:13:1: key 'span' in wire 'w' is not available in this version; " + known,
@@ -228,8 +228,9 @@ TEST_CASE("kinds of values") {
   CHECK(error("wire.w.nodes", "80.0") ==
         "'nodes' of wire 'w' is number 80; expected a whole number, at least 3 and at most 1e+06; write nodes = <whole "
         "number>");
-  CHECK(error("vessel.v.rigid", "yes") == "'rigid' of vessel 'v' is text \"yes\"; expected true or false; write rigid "
-                                          "= true");
+  CHECK(error("vessel.v.rigid", "yes") ==
+        "'rigid' of vessel 'v' is text \"yes\"; expected true or false; write rigid "
+        "= true");
   CHECK(error("solver.tolerance", "1e-8 N") ==
         "wrong unit: 'tolerance' of solver 'ipopt' is text \"1e-8 N\"; expected a number, more than 0; write 1e-08");
   CHECK(error("solver.tolerance", "\"1e-8\"") ==
@@ -270,7 +271,8 @@ TEST_CASE("profiles") {
     return all[0].substr(("--set " + path + "=" + value + ": ").size());
   };
   CHECK(error("wire.w.radius", "{ colum = \"r\" }") ==
-        "unknown key 'colum' in 'radius' of wire 'w'; expected one of: table, segments, column, unit, measured-from; did you "
+        "unknown key 'colum' in 'radius' of wire 'w'; expected one of: table, segments, column, unit, measured-from; "
+        "did you "
         "mean 'column'?");
   CHECK(error("wire.w.radius", "{}") ==
         "'radius' of wire 'w' has none of 'table', 'segments' and 'column'; expected exactly one of them; write a "
@@ -300,9 +302,10 @@ TEST_CASE("profiles") {
   CHECK(error("energy.anchoring.stiffness", "{ column = \"k\" }") ==
         "'column' of 'stiffness' of energy 'anchoring' without a unit; expected one of: N/mm^2, N/mm; write { column = "
         "\"k\", unit = \"N/mm^2\" }");
-  CHECK(error("energy.anchoring.stiffness", "{ column = \"k\", unit = \"N/m\" }") ==
-        "'unit' of 'stiffness' of energy 'anchoring' is text \"N/m\"; expected one of: N/mm^2, N/mm; write the unit that "
-        "the column's numbers are in");
+  CHECK(
+      error("energy.anchoring.stiffness", "{ column = \"k\", unit = \"N/m\" }") ==
+      "'unit' of 'stiffness' of energy 'anchoring' is text \"N/m\"; expected one of: N/mm^2, N/mm; write the unit that "
+      "the column's numbers are in");
   CHECK(error("wire.w.radius", "{ table = [[0, 1]], unit = \"mm\" }") ==
         "'unit' of 'radius' of wire 'w' without a 'column'; expected units in the values themselves; remove it");
   CHECK(error("energy.anchoring.stiffness", "{ segments = { a = \"1 N/mm\", b = \"1 N/mm^2\" } }") ==

@@ -36,7 +36,8 @@ const ParameterDeclaration nodes = at_least(declare("nodes", ParameterType::inte
 std::vector<ParameterDeclaration> sinusoid_schema() {
   return {positive(declare("chord", ParameterType::scalar, "mm", nullptr)),
           declare("amplitude", ParameterType::scalar, "mm", nullptr),
-          declare("periods", ParameterType::scalar, "", "1.0"), nodes,
+          declare("periods", ParameterType::scalar, "", "1.0"),
+          nodes,
           one_of("sampling", "\"uniform-arc\"", "uniform-x|uniform-arc"),
           declare("origin", ParameterType::vector, "mm", "")};
 }
@@ -84,8 +85,7 @@ FakeRegistry::FakeRegistry() {
   add(Kind::energy, "wire-bending",
       {not_negative(declare("bending-stiffness", ParameterType::profile, "N mm^2", nullptr))});
   add(Kind::energy, "vessel-strain", vessel_strain_schema());
-  add(Kind::energy, "anchoring",
-      {not_negative(declare("stiffness", ParameterType::profile, "N/mm^2|N/mm", nullptr))});
+  add(Kind::energy, "anchoring", {not_negative(declare("stiffness", ParameterType::profile, "N/mm^2|N/mm", nullptr))});
   add(Kind::energy, "axial-tension", {declare("tension", ParameterType::scalar, "N", nullptr)});
   add(Kind::energy, "point-load", {declare("force", ParameterType::vector, "N", nullptr)});
   add(Kind::constraint, "node-wise-contact", contact_schema());
@@ -99,8 +99,8 @@ void FakeRegistry::add(Kind kind, const std::string& name, const std::vector<Par
   Offer& offer = offers_[{kind, name}];
   offer.name = name;
   offer.schema = schema;
-  offer.descriptor = {kind, offer.name.c_str(), "", offer.schema.data(), static_cast<int>(offer.schema.size()),
-                      nullptr, nullptr};
+  offer.descriptor = {
+      kind, offer.name.c_str(), "", offer.schema.data(), static_cast<int>(offer.schema.size()), nullptr, nullptr};
 }
 
 void FakeRegistry::break_plugin(Kind kind, const std::string& name, const std::string& text) {

@@ -16,8 +16,7 @@ TEST_CASE("a name with few letters wrong finds the right one") {
 }
 
 TEST_CASE("underscores stand for hyphens") {
-  CHECK(nearest_names("bending_stiffness", {"bending-stiffness", "stretch-stiffness"}) ==
-        Names{"bending-stiffness"});
+  CHECK(nearest_names("bending_stiffness", {"bending-stiffness", "stretch-stiffness"}) == Names{"bending-stiffness"});
 }
 
 TEST_CASE("a part of a hyphenated name finds the whole") {

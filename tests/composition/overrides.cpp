@@ -52,12 +52,10 @@ TEST_CASE("an override replaces a whole table, and a named entry keeps its name"
 
 TEST_CASE("a plugin's name alone opens into a table, and ends are first and last") {
   Workbench bench;
-  const Composition scene = bench.loaded(
-      std::string(test::small_scene),
-      {{"wire.w.kinematics", "edge-frames"},
-       {"wire.w.kinematics.regularised", "true"},
-       {"wire.w.ends.last", "clamped"},
-       {"wire.w.ends.last.tangent", "[1, 0]"}});
+  const Composition scene = bench.loaded(std::string(test::small_scene), {{"wire.w.kinematics", "edge-frames"},
+                                                                          {"wire.w.kinematics.regularised", "true"},
+                                                                          {"wire.w.ends.last", "clamped"},
+                                                                          {"wire.w.ends.last.tangent", "[1, 0]"}});
   CHECK(scene.wires[0].kinematics.parameters.flag("regularised"));
   CHECK(scene.wires[0].end[0].type == EndType::pinned);
   CHECK(scene.wires[0].end[1].type == EndType::clamped);
@@ -120,7 +118,8 @@ type = "axial-tension"
 on = "w"
 tension = "2 N"
 )";
-  const Composition scene = bench.loaded(two, {{"energy.pull.tension", "3 N"}, {"energy.axial-tension.tension", "4 N"}});
+  const Composition scene =
+      bench.loaded(two, {{"energy.pull.tension", "3 N"}, {"energy.axial-tension.tension", "4 N"}});
   CHECK(scene.energies[1].component.parameters.scalar("tension") == 4.0);
   CHECK(scene.energies[4].component.parameters.scalar("tension") == 3.0);
 

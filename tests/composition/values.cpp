@@ -106,7 +106,8 @@ TEST_CASE("ends are names or tables") {
   CHECK(scene.wires[0].end[0].type == EndType::held_edge);
   CHECK(scene.wires[0].end[1].type == EndType::clamped);
   CHECK(scene.wires[0].end[1].tangent == std::vector<double>{1.0, 0.5});
-  CHECK(scene.wires[0].end[1].position == "--set wire.w.ends=[\"held-edge\", { type = \"clamped\", tangent = [1, 0.5] }]");
+  CHECK(scene.wires[0].end[1].position ==
+        "--set wire.w.ends=[\"held-edge\", { type = \"clamped\", tangent = [1, 0.5] }]");
   CHECK(scene.vessels[0].rigid);
 }
 

@@ -13,8 +13,9 @@ TEST_CASE("what acts on a scene is not called idle") {
 
 TEST_CASE("a scene without constraints has no use for radii, an enforcement and the thresholds of rows") {
   Workbench bench;
-  const std::string text = std::string(test::small_scene) + "[enforcement]\ntype = \"kkt\"\n[certificate]\n"
-                                                            "multiplier = -1e-7\nstationarity = 1e-5\n";
+  const std::string text = std::string(test::small_scene) +
+                           "[enforcement]\ntype = \"kkt\"\n[certificate]\n"
+                           "multiplier = -1e-7\nstationarity = 1e-5\n";
   CHECK(bench.loaded(text, {{"constraint", "[]"}}).without_effect ==
         Texts{"scene.toml:7:1: 'radius' of vessel 'v' has no effect: no constraint acts on it",
               "scene.toml:11:1: 'radius' of wire 'w' has no effect: no constraint acts on it",
@@ -24,8 +25,10 @@ TEST_CASE("a scene without constraints has no use for radii, an enforcement and 
 
 TEST_CASE("a rigid vessel has no use for ends, kinematics and energies") {
   Workbench bench;
-  CHECK(bench.loaded(test::small_scene,
-                     {{"vessel.v.rigid", "true"}, {"vessel.v.ends", "[\"free\", \"free\"]"}, {"vessel.v.kinematics", "nodes"}})
+  CHECK(bench
+            .loaded(test::small_scene, {{"vessel.v.rigid", "true"},
+                                        {"vessel.v.ends", "[\"free\", \"free\"]"},
+                                        {"vessel.v.kinematics", "nodes"}})
             .without_effect ==
         Texts{"--set vessel.v.ends=[\"free\", \"free\"]: 'ends' of vessel 'v' has no effect: a rigid vessel has no "
               "unknowns",

@@ -97,12 +97,10 @@ TEST_CASE("derivatives of the curve agree with differences") {
     for (int segment = 0; segment < 6; ++segment) {
       const double u = 0.37, step = 1e-5;
       const CurvePoint here = evaluate(curve, {segment, u});
-      const CurvePoint low = evaluate(curve, {segment, u - step}),
-                       high = evaluate(curve, {segment, u + step});
+      const CurvePoint low = evaluate(curve, {segment, u - step}), high = evaluate(curve, {segment, u + step});
       REQUIRE(norm(here.slope, 3) > 0.1);
       for (int i = 0; i < 3; ++i) {
-        CHECK(here.slope[i] ==
-              doctest::Approx((high.position[i] - low.position[i]) / (2 * step)).epsilon(1e-8));
+        CHECK(here.slope[i] == doctest::Approx((high.position[i] - low.position[i]) / (2 * step)).epsilon(1e-8));
         CHECK(std::abs(here.second[i] - (high.slope[i] - low.slope[i]) / (2 * step)) < 1e-8);
       }
       CHECK(std::abs(here.radius_slope - (high.radius - low.radius) / (2 * step)) < 1e-8);

@@ -40,8 +40,7 @@ struct Row {
   std::vector<double> gradient() const {
     const ClosestPoint at = closest();
     double local[3 * (1 + max_stencil)];
-    const NodeRange nodes =
-        gap_derivatives(tube.view(interpolation), x.data(), shape, at, local, 1.0, nullptr);
+    const NodeRange nodes = gap_derivatives(tube.view(interpolation), x.data(), shape, at, local, 1.0, nullptr);
     std::vector<double> out(static_cast<std::size_t>(size()), 0.0);
     for (int k = 0; k < (1 + nodes.count) * tube.dimension; ++k) out[spread(k, nodes)] = local[k];
     return out;
@@ -215,9 +214,8 @@ TEST_CASE("derivatives at the curve's ends, at a knot, and on tiny curves") {
         const Tube tube = crooked_tube(dimension, 7, random);
         const Centerline curve = tube.view(interpolation);
         for (const double end : {0.0, 6.0}) {
-          Row row{tube,        point_across(tube, interpolation, end, 0.6, random),
-                  {form, 0.4}, interpolation,
-                  {0.0, 6.0},  end};
+          Row row{tube, point_across(tube, interpolation, end, 0.6, random), {form, 0.4}, interpolation, {0.0, 6.0},
+                  end};
           const CurvePoint q = evaluate(curve, coordinate(end, 7));
           const double outward = (end > 0.0 ? 6.0 : -6.0) / norm(q.slope, 3);
           for (int k = 0; k < dimension; ++k) row.x[static_cast<std::size_t>(k)] += outward * q.slope[k];
@@ -254,11 +252,7 @@ TEST_CASE("a wire on the centerline: the squared gap is smooth there") {
   for (const int dimension : {2, 3}) {
     const Tube tube = crooked_tube(dimension, 8, random);
     const CurvePoint q = evaluate(tube.view(Interpolation::spline), {3, 0.4});
-    Row row{tube,
-            {q.position, q.position + dimension},
-            {GapForm::squared, 0.0},
-            Interpolation::spline,
-            {0.0, 7.0},
+    Row row{tube, {q.position, q.position + dimension}, {GapForm::squared, 0.0}, Interpolation::spline, {0.0, 7.0},
             3.4};
     check_derivatives(row);
     const ClosestPoint at = row.closest();

@@ -56,8 +56,7 @@ TEST_CASE("arc length of an ellipse") {
   const double a = 5.0;
   const double b = 1.0;
   const double half_pi = std::acos(0.0);
-  const ArcLength arc([&](double t) { return std::hypot(a * std::sin(t), b * std::cos(t)); },
-                      {0.0, 4.0 * half_pi});
+  const ArcLength arc([&](double t) { return std::hypot(a * std::sin(t), b * std::cos(t)); }, {0.0, 4.0 * half_pi});
   const double exact = perimeter(a, b);
   CHECK(exact == Approx(21.010044).epsilon(1e-7));
   CHECK(arc.total() == Approx(exact).epsilon(1e-13));

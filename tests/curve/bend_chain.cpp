@@ -13,8 +13,7 @@ using doctest::Approx;
 const double pi = std::acos(-1.0);
 
 std::vector<BendSegment> tortuous() {
-  return {{60.0, 0.0, 0.0}, {40.0, 1.2, 0.5},  {35.0, -2.9, 2.0},
-          {15.0, 0.0, 0.0}, {50.0, 3.3, -1.1}, {20.0, 0.7, 3.0}};
+  return {{60.0, 0.0, 0.0}, {40.0, 1.2, 0.5}, {35.0, -2.9, 2.0}, {15.0, 0.0, 0.0}, {50.0, 3.3, -1.1}, {20.0, 0.7, 3.0}};
 }
 
 TEST_CASE("a chain is as long as its segments and begins at the origin along +x") {
@@ -79,8 +78,7 @@ TEST_CASE("curvature is continuous with its derivative at every joint and peaks 
     CAPTURE(joint);
     for (const double step : {-1e-3, 1e-3}) {
       // κ = (β/l)(1 − cos 2πs/l) ≈ (β/l)·½(2πs/l)² near the joint.
-      CHECK(norm(chain.curvature_vector(joint + step)) <
-            2.0 * 2.9 / 35.0 * std::pow(2.0 * pi * 1e-3 / 20.0, 2));
+      CHECK(norm(chain.curvature_vector(joint + step)) < 2.0 * 2.9 / 35.0 * std::pow(2.0 * pi * 1e-3 / 20.0, 2));
     }
   }
   CHECK(norm(chain.curvature_vector(117.5)) == Approx(2.0 * 2.9 / 35.0).epsilon(1e-14));

@@ -104,11 +104,10 @@ TEST_CASE("a header that does not fit is told with what it has") {
         "the columns by commas\n"
         "F:1: no column 'y_mm' among x_mm;y_mm; expected x_mm,y_mm[,radius_mm][,any point data]; separate "
         "the columns by commas");
-  CHECK(
-      errors_of("x_mm,y_mm,calcium,calcium,,label,segment\n0,0,1,1,1,a,b\n", 2) ==
-      "F:1: column 'calcium' stands there twice; expected every name once; rename or remove one of them\n"
-      "F:1: column 5 has no name; expected a name for every column; name it or remove the comma\n"
-      "F:1: both a column 'label' and a column 'segment'; expected one column of labels; remove one of them");
+  CHECK(errors_of("x_mm,y_mm,calcium,calcium,,label,segment\n0,0,1,1,1,a,b\n", 2) ==
+        "F:1: column 'calcium' stands there twice; expected every name once; rename or remove one of them\n"
+        "F:1: column 5 has no name; expected a name for every column; name it or remove the comma\n"
+        "F:1: both a column 'label' and a column 'segment'; expected one column of labels; remove one of them");
 }
 
 TEST_CASE("too few points, no header, no file, a folder") {

@@ -155,8 +155,7 @@ TEST_CASE("derivatives up to degree − 1 are continuous at knots and agree with
         curve.evaluate(t - h, order, behind);
         curve.evaluate(t, order + 1, derivative);
         for (int k = 0; k < 3; ++k) {
-          CHECK(std::abs((ahead[k] - behind[k]) / (2.0 * h) - derivative[k]) <
-                2e-2 * std::pow(10.0, order - 4));
+          CHECK(std::abs((ahead[k] - behind[k]) / (2.0 * h) - derivative[k]) < 2e-2 * std::pow(10.0, order - 4));
         }
       }
     }
@@ -234,8 +233,7 @@ TEST_CASE("a distance that rounding hides is refused") {
   SplineFit fit;
   const Status status = fit_spline(sample.parameter, sample.points, 3, 5, 1e-15, fit);
   CHECK(status.code == Code::invalid_input);
-  CHECK(status.text.find(
-            "smoothing 1e-15 mm cannot be met to rounding; expected more, or points spaced evenly") == 0);
+  CHECK(status.text.find("smoothing 1e-15 mm cannot be met to rounding; expected more, or points spaced evenly") == 0);
 }
 
 TEST_CASE("thousands of points are smoothed too") {

@@ -178,7 +178,7 @@ void check_equal(const std::vector<double>& closed, const std::vector<double>& t
 /// A law as one of the plugins makes it, with the numbers that it may read at a place.
 struct ClosedForm {
   std::string name;
-  std::shared_ptr<Session> session;   ///< owns the law
+  std::shared_ptr<Session> session;  ///< owns the law
   const Law* law = nullptr;
   int parameters = 1;
   std::vector<int> dimensions;
@@ -215,8 +215,10 @@ void check_closed_form(const ClosedForm& form, Author author = Author()) {
         const Outputs expected = evaluate(templated, places);
         check_equal(closed.energy, expected.energy, places.count);
         check_equal(closed.stress, expected.stress, places.count);
-        if (form.name != "tension") check_equal(closed.modulus, expected.modulus, places.count);
-        else CHECK(largest(closed.modulus) == 0.0);
+        if (form.name != "tension")
+          check_equal(closed.modulus, expected.modulus, places.count);
+        else
+          CHECK(largest(closed.modulus) == 0.0);
 
         const Outputs alone = evaluate(*form.law, places, false);
         CHECK(alone.energy == closed.energy);

@@ -22,8 +22,11 @@ std::vector<double> moved(const Session& session, const std::vector<double>& q, 
   for (const FieldEntry& entry : session.assembly->entries()) {
     double* own = out.data() + entry.coordinate;
     switch (entry.manifold) {
-      case Manifold::real: break;
-      case Manifold::circle: own[0] += axis[2]; break;
+      case Manifold::real:
+        break;
+      case Manifold::circle:
+        own[0] += axis[2];
+        break;
       case Manifold::vector: {
         Vector3 p;
         for (int k = 0; k < d; ++k) p[k] = own[k];
@@ -32,7 +35,9 @@ std::vector<double> moved(const Session& session, const std::vector<double>& q, 
         break;
       }
       case Manifold::direction:
-      case Manifold::rotation: (rotation * lie::Rotation::load(own)).store(own); break;
+      case Manifold::rotation:
+        (rotation * lie::Rotation::load(own)).store(own);
+        break;
     }
   }
   return out;

@@ -63,7 +63,7 @@ std::string refusal_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("a foundation per length is the one per node whose springs are stiffness times tributary length") {
-  const auto stiffness = [](double s) { return 0.05 + 0.002 * s; };   // N/mm²
+  const auto stiffness = [](double s) { return 0.05 + 0.002 * s; };  // N/mm²
   for (const char* type : {"anchoring", "extravascular"}) {
     for (const int dimension : {2, 3}) {
       for (const char* kinematics : {"nodes", "edge-frames"}) {
@@ -73,10 +73,11 @@ TEST_CASE("a foundation per length is the one per node whose springs are stiffne
         SmallScene scene;
         scene.dimension = dimension;
         scene.vessel_kinematics = kinematics;
-        scene.vessel_ends = R"(["free", "free"])";   // so that half edges count
+        scene.vessel_ends = R"(["free", "free"])";  // so that half edges count
         if (dimension == 2) {
-          scene.geometry = "{ type = \"sinusoid\", chord = \"40 mm\", amplitude = \"4 mm\", periods = 1, nodes = 8, "
-                           "sampling = \"uniform-x\" }";
+          scene.geometry =
+              "{ type = \"sinusoid\", chord = \"40 mm\", amplitude = \"4 mm\", periods = 1, nodes = 8, "
+              "sampling = \"uniform-x\" }";
         }
         const auto plain = session_of_text(with_foundation(scene, type, "\"0.05 N/mm^2\""));
         const Curve& vessel = *plain->scene->find("vessel");
@@ -138,8 +139,9 @@ TEST_CASE("vessel-strain warns, with figures, where nothing resists stretching, 
     const std::string old = "stretch-stiffness = \"11 N\"\n";
     const std::size_t where = text.find(old);
     REQUIRE(where != std::string::npos);
-    text.replace(where, old.size(), (stretch.empty() ? "" : "stretch-stiffness = " + stretch + "\n") +
-                                        (torsion.empty() ? "" : "torsional-stiffness = " + torsion + "\n"));
+    text.replace(where, old.size(),
+                 (stretch.empty() ? "" : "stretch-stiffness = " + stretch + "\n") +
+                     (torsion.empty() ? "" : "torsional-stiffness = " + torsion + "\n"));
     return session_of_text(text)->scene->warnings;
   };
   const std::string stretch = "stretch-stiffness is 0", torsion = "torsional-stiffness is 0";

@@ -48,12 +48,11 @@ BuiltGeometry build_geometry(const std::string& plugin, const std::string& toml,
   if (choice.descriptor == nullptr) return result;
 
   Report report;
-  const auto source =
-      std::make_shared<const Source>(Source{"scene.toml", std::filesystem::current_path(), 0});
+  const auto source = std::make_shared<const Source>(Source{"scene.toml", std::filesystem::current_path(), 0});
   const auto table = read_toml(toml, source, report);
   if (table) {
-    const Span<const ParameterDeclaration> schema(
-        choice.descriptor->parameters, static_cast<std::size_t>(choice.descriptor->parameter_count));
+    const Span<const ParameterDeclaration> schema(choice.descriptor->parameters,
+                                                  static_cast<std::size_t>(choice.descriptor->parameter_count));
     const SchemaOwner owner{"geometry '" + plugin + "'", "", {}, {}};
     choice.parameters = read_parameters(*table, owner, schema, result.status, report);
   }

@@ -16,9 +16,7 @@ struct BuiltGeometry {
 
   int nodes() const { return static_cast<int>(curve.points.size()) / dimension; }
   /// Coordinate `axis` of a node.
-  double at(int node, int axis) const {
-    return curve.points[static_cast<std::size_t>(node * dimension + axis)];
-  }
+  double at(int node, int axis) const { return curve.points[static_cast<std::size_t>(node * dimension + axis)]; }
   double edge(int first) const;
   /// Sum of the edges.
   double length() const;

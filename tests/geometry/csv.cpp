@@ -14,9 +14,7 @@ using doctest::Approx;
 
 const double pi = std::acos(-1.0);
 
-std::string reading(const std::string& path, const std::string& keys) {
-  return "file = \"" + path + "\"\n" + keys;
-}
+std::string reading(const std::string& path, const std::string& keys) { return "file = \"" + path + "\"\n" + keys; }
 
 /// Half a circle of radius 20 about the origin at the angles 0 … π, with a radius that grows along it.
 std::string half_circle(int points, double noise) {
@@ -26,9 +24,8 @@ std::string half_circle(int points, double noise) {
   for (int i = 0; i < points; ++i) {
     const double phase = pi * i / (points - 1);
     const double distance = 20.0 + noise * std::cos(7.0 * i);
-    text << distance * std::cos(phase) << ',' << distance * std::sin(phase) << ','
-         << noise * std::sin(5.0 * i) << ',' << 4.0 + phase << ',' << (2 * i < points ? "first" : "second")
-         << '\n';
+    text << distance * std::cos(phase) << ',' << distance * std::sin(phase) << ',' << noise * std::sin(5.0 * i) << ','
+         << 4.0 + phase << ',' << (2 * i < points ? "first" : "second") << '\n';
   }
   return text.str();
 }
@@ -49,8 +46,7 @@ TEST_CASE("without nodes and smoothing the points stand as they are") {
 TEST_CASE("with nodes a spline through the points is sampled uniformly in arc length") {
   const TemporaryFile file(half_circle(25, 0.0));
   for (const std::string degree : {"3", "5"}) {
-    const BuiltGeometry curve =
-        built("csv", reading(file.path(), "nodes = 101\nsmoothing-degree = " + degree), 3);
+    const BuiltGeometry curve = built("csv", reading(file.path(), "nodes = 101\nsmoothing-degree = " + degree), 3);
     REQUIRE(curve.nodes() == 101);
     for (int i = 0; i < 101; ++i) {
       const double phase = pi * i / 100.0;
@@ -76,15 +72,14 @@ TEST_CASE("smoothing leaves its distance and keeps the number of points, data an
   double from_circle = 0.0;
   for (int i = 0; i < 60; ++i) {
     for (int k = 0; k < 3; ++k) square += std::pow(smooth.at(i, k) - raw.at(i, k), 2);
-    from_circle +=
-        std::pow(std::hypot(smooth.at(i, 0), smooth.at(i, 1)) - 20.0, 2) + std::pow(smooth.at(i, 2), 2);
+    from_circle += std::pow(std::hypot(smooth.at(i, 0), smooth.at(i, 1)) - 20.0, 2) + std::pow(smooth.at(i, 2), 2);
   }
   CHECK(std::sqrt(square / 60.0) == Approx(0.45).epsilon(1e-8));
   CHECK(std::sqrt(from_circle / 60.0) < 0.25);  // the points: 0.5
   CHECK(smooth.curve.data[0].value == raw.curve.data[0].value);
   CHECK(smooth.curve.label == raw.curve.label);
-  CHECK(std::hypot(smooth.curve.first_tangent[0], smooth.curve.first_tangent[1],
-                   smooth.curve.first_tangent[2]) == Approx(1.0).epsilon(1e-14));
+  CHECK(std::hypot(smooth.curve.first_tangent[0], smooth.curve.first_tangent[1], smooth.curve.first_tangent[2]) ==
+        Approx(1.0).epsilon(1e-14));
   CHECK(smooth.warnings.empty());
 }
 
@@ -103,9 +98,8 @@ TEST_CASE("more smoothing than a polynomial leaves is said") {
   REQUIRE(curve.warnings.size() == 1);
   const std::string warning = file.anonymous(curve.warnings[0]);
   CHECK(warning.find("F: smoothing 30 mm is more than the 0.") == 0);
-  CHECK(warning.find(
-            " mm that a single polynomial of degree 5 leaves; that polynomial is used; a smaller smoothing "
-            "keeps more of the curve") != std::string::npos);
+  CHECK(warning.find(" mm that a single polynomial of degree 5 leaves; that polynomial is used; a smaller smoothing "
+                     "keeps more of the curve") != std::string::npos);
 }
 
 TEST_CASE("errors of the file and of the keys are named") {
@@ -122,11 +116,10 @@ TEST_CASE("errors of the file and of the keys are named") {
         "F: 5 points; expected at least 6 for a spline of degree 5; set smoothing-degree = 3, or leave out "
         "'nodes' and 'smoothing'");
   const TemporaryFile three("x_mm,y_mm\n0,0\n1,0\n2,1\n");
-  CHECK(
-      three.anonymous(build_geometry("csv", reading(three.path(), "smoothing = 0.1\nsmoothing-degree = 3"), 2)
-                          .status.text) ==
-      "F: 3 points; expected at least 4 for a spline of degree 3; add rows, or leave out 'nodes' and "
-      "'smoothing'");
+  CHECK(three.anonymous(
+            build_geometry("csv", reading(three.path(), "smoothing = 0.1\nsmoothing-degree = 3"), 2).status.text) ==
+        "F: 3 points; expected at least 4 for a spline of degree 3; add rows, or leave out 'nodes' and "
+        "'smoothing'");
   CHECK(build_geometry("csv", reading(three.path(), "smoothing-degree = 4"), 2).status.text ==
         "geometry 'csv': 'smoothing-degree' is 4; expected 3 or 5; give one of them");
 }
@@ -170,8 +163,7 @@ TEST_CASE("a real artery, smoothed: length and bends" * doctest::skip(no_data)) 
     const char* distance;
     double tightest, fold;
   };
-  for (const Expected expected :
-       {Expected{"0.2", 8.58, 0.676}, {"0.3", 9.38, 0.581}, {"0.5", 12.32, 0.761}}) {
+  for (const Expected expected : {Expected{"0.2", 8.58, 0.676}, {"0.3", 9.38, 0.581}, {"0.5", 12.32, 0.761}}) {
     const BuiltGeometry curve = smoothed(expected.distance);
     const Bends found = bends(curve);
     CAPTURE(expected.distance);
@@ -186,17 +178,16 @@ TEST_CASE("a real artery, smoothed: length and bends" * doctest::skip(no_data)) 
 
 TEST_CASE("a real artery, smoothed: the same curve as FITPACK's" * doctest::skip(no_data)) {
   const std::string folder = std::string(data_folder) + "/vmr_0110/";
-  const BuiltGeometry curve = built("csv",
-                                    reading(folder + "left_iliofemoral_to_aorta.csv",
-                                            "coordinates = \"RAS\"\nnodes = 200\nsmoothing = \"0.3 mm\""),
-                                    3);
+  const BuiltGeometry curve = built(
+      "csv",
+      reading(folder + "left_iliofemoral_to_aorta.csv", "coordinates = \"RAS\"\nnodes = 200\nsmoothing = \"0.3 mm\""),
+      3);
   const BuiltGeometry reference = built("csv", reading(folder + "left_smoothed_200.csv", ""), 3);
   REQUIRE(reference.nodes() == 200);
   double farthest = 0.0;
   for (int i = 0; i < 200; ++i) {
-    farthest = std::max(farthest,
-                        std::hypot(curve.at(i, 0) - reference.at(i, 0), curve.at(i, 1) - reference.at(i, 1),
-                                   curve.at(i, 2) - reference.at(i, 2)));
+    farthest = std::max(farthest, std::hypot(curve.at(i, 0) - reference.at(i, 0), curve.at(i, 1) - reference.at(i, 1),
+                                             curve.at(i, 2) - reference.at(i, 2)));
   }
   CHECK(farthest < 1e-3);
   const double held[3] = {-0.492142416654365, 0.386515454003037, 0.78000105483674};

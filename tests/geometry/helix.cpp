@@ -12,8 +12,7 @@ using doctest::Approx;
 const double pi = std::acos(-1.0);
 
 TEST_CASE("a helix winds about +x from (0, radius, 0)") {
-  const BuiltGeometry helix =
-      built("helix", "chord = \"150 mm\"\nradius = \"15 mm\"\nturns = 1\nnodes = 61", 3);
+  const BuiltGeometry helix = built("helix", "chord = \"150 mm\"\nradius = \"15 mm\"\nturns = 1\nnodes = 61", 3);
   REQUIRE(helix.nodes() == 61);
   for (int i = 0; i < 61; ++i) {
     const double phase = 2.0 * pi * i / 60.0;
@@ -32,10 +31,9 @@ TEST_CASE("its length is 177.15 mm and its end tangents are the curve's own") {
 }
 
 TEST_CASE("negative turns wind left, and the whole is placed by its axis") {
-  const BuiltGeometry helix = built(
-      "helix",
-      "chord = 20\nradius = 5\nturns = -2.25\nnodes = 401\norigin = [1, 2, 3]\nrotation = [0, 0, \"90 deg\"]",
-      3);
+  const BuiltGeometry helix =
+      built("helix",
+            "chord = 20\nradius = 5\nturns = -2.25\nnodes = 401\norigin = [1, 2, 3]\nrotation = [0, 0, \"90 deg\"]", 3);
   CHECK(helix.at(0, 0) == Approx(-4.0).epsilon(1e-14));  // (0, 5, 0) turned to (−5, 0, 0)
   CHECK(helix.at(0, 1) == Approx(2.0).epsilon(1e-14));
   CHECK(helix.at(400, 1) == Approx(22.0).epsilon(1e-14));

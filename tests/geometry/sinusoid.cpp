@@ -19,9 +19,7 @@ double arc_length(double x) {
   const double k = 2.0 * pi / 150.0;
   const auto slope = [&](double at) { return 25.0 * k * std::cos(k * at); };
   const auto speed = [&](double at) { return std::hypot(1.0, slope(at)); };
-  const auto speed_slope = [&](double at) {
-    return -slope(at) * 25.0 * k * k * std::sin(k * at) / speed(at);
-  };
+  const auto speed_slope = [&](double at) { return -slope(at) * 25.0 * k * k * std::sin(k * at) / speed(at); };
   const double h = x / steps;
   double sum = 0.5 * (speed(0.0) + speed(x));
   for (int i = 1; i < steps; ++i) sum += speed(h * i);

@@ -29,7 +29,8 @@ struct Case {
   }
   TestCurve dressed(TestCurve curve) const {
     curve.extension = extension;
-    const std::vector<double> first = {1.0, 0.4, dimension == 3 ? 0.3 : 0.0}, last = {0.7, 0.9, dimension == 3 ? -0.2 : 0.0};
+    const std::vector<double> first = {1.0, 0.4, dimension == 3 ? 0.3 : 0.0},
+                              last = {0.7, 0.9, dimension == 3 ? -0.2 : 0.0};
     if (ends == Ends::clamped) curve.clamp(0, first);
     if (ends == Ends::held_edge_and_clamp) curve.hold_edge(0);
     if (ends != Ends::free) curve.clamp(1, last);
@@ -76,10 +77,11 @@ std::vector<double> perturbed(const Declared& curve, double size, unsigned seed)
   return curve.retract(curve.start(), delta);
 }
 
-/// Every site that is declared. `bases_are_coordinates`: ζ's basis is carried by the coordinates, so that its numbers can
-/// be compared one by one; otherwise only |ζ| has a meaning.
+/// Every site that is declared. `bases_are_coordinates`: ζ's basis is carried by the coordinates, so that its numbers
+/// can be compared one by one; otherwise only |ζ| has a meaning.
 template <class Declared>
-void check_all_sites(const Declared& curve, const std::vector<double>& q, bool bases_are_coordinates, Tolerance tolerance = {}) {
+void check_all_sites(const Declared& curve, const std::vector<double>& q, bool bases_are_coordinates,
+                     Tolerance tolerance = {}) {
   for (const SiteDeclaration& site : curve.declaration.sites) {
     CAPTURE(static_cast<int>(site.site));
     const bool frames_in_space = site.site == Site::frame && curve.curve.dimension == 3;

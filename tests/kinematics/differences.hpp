@@ -54,7 +54,8 @@ inline std::vector<double> symmetric_part(const std::vector<std::vector<double>>
   return out;
 }
 
-inline std::vector<double> weighted_rows(const std::vector<double>& weight, const std::vector<double>& matrix, int columns) {
+inline std::vector<double> weighted_rows(const std::vector<double>& weight, const std::vector<double>& matrix,
+                                         int columns) {
   std::vector<double> out(at(columns), 0.0);
   for (std::size_t r = 0; r < weight.size(); ++r) {
     for (int c = 0; c < columns; ++c) out[at(c)] += weight[r] * matrix[r * at(columns) + at(c)];
@@ -63,7 +64,7 @@ inline std::vector<double> weighted_rows(const std::vector<double>& weight, cons
 }
 
 struct Tolerance {
-  double jacobian = 1e-9, curvature = 1e-8;   ///< relative to the largest entry
+  double jacobian = 1e-9, curvature = 1e-8;  ///< relative to the largest entry
 };
 
 /// B against differences of y, and Σ stress ∂²y/∂δ² against differences of stressᵀB, number by number.
@@ -106,7 +107,7 @@ struct IsotropicEnergy {
 
   struct Station {
     double energy = 0.0;
-    std::vector<double> stress, modulus;   ///< values, values × values
+    std::vector<double> stress, modulus;  ///< values, values × values
   };
 
   Station at_station(int k, const double* y) const {
@@ -179,13 +180,15 @@ struct IsotropicEnergy {
 template <class Declared>
 void check_isotropic_energy(const Declared& curve, const std::vector<double>& q, Tolerance tolerance = {}) {
   const IsotropicEnergy<Declared> energy{curve};
-  const auto slopes = differences(curve, q, [&](const std::vector<double>& p) { return std::vector<double>{energy.energy(p)}; });
+  const auto slopes =
+      differences(curve, q, [&](const std::vector<double>& p) { return std::vector<double>{energy.energy(p)}; });
   std::vector<double> expected;
   for (const auto& slope : slopes) expected.push_back(slope[0]);
   REQUIRE(largest(expected) > 1e-12);
   CHECK(largest_difference(energy.gradient(q), expected) <= tolerance.jacobian * std::max(1.0, largest(expected)));
 
-  const std::vector<double> second = symmetric_part(differences(curve, q, [&](const std::vector<double>& p) { return energy.gradient(p); }));
+  const std::vector<double> second =
+      symmetric_part(differences(curve, q, [&](const std::vector<double>& p) { return energy.gradient(p); }));
   REQUIRE(largest(second) > 1e-3);
   CHECK(largest_difference(energy.hessian(q), second) <= tolerance.curvature * largest(second));
 }

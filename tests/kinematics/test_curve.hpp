@@ -45,7 +45,8 @@ struct TestCurve {
       held += length_.back();
     }
     double sum = 0.0;
-    for (std::size_t i = 0; i < fraction_.size(); ++i) sum += fraction_[i] *= 1.0 + 0.1 * std::sin(static_cast<double>(i));
+    for (std::size_t i = 0; i < fraction_.size(); ++i)
+      sum += fraction_[i] *= 1.0 + 0.1 * std::sin(static_cast<double>(i));
     for (double& f : fraction_) f /= sum;
 
     CurveView view;

@@ -160,8 +160,8 @@ class Numbers {
 
 /// Angles where formulas change or lose digits: near 0, ordinary, near π.
 inline const std::vector<double>& angles() {
-  static const std::vector<double> list{1e-8, 1e-4, 0.0632, 0.0633, 0.0999, 0.1001, 0.7,  1.0471,
-                                        1.0473, 1.9, 2.9, pi - 1e-3, pi - 1e-7};
+  static const std::vector<double> list{1e-8,   1e-4,   0.0632, 0.0633, 0.0999,    0.1001,   0.7,
+                                        1.0471, 1.0473, 1.9,    2.9,    pi - 1e-3, pi - 1e-7};
   return list;
 }
 

@@ -56,8 +56,10 @@ TEST_CASE("relative turn and its derivatives in the tangents of both directions"
     const double rounding = 1e-15 * std::fmax(1.0, 1.0 / std::sin(angle));
     CHECK(reference::magnitude(widen(found.value) - zeta({}, {})) < (angle < 2.0 ? 1e-15 : 4.0 * rounding));
     const double tolerance = angle < 2.0 ? 4e-15 : 4.0 * rounding;
-    CHECK(relative_error(found.by_a, reference::jacobian<2, 2>([&](const auto& d) { return zeta(d, {}); })) < tolerance);
-    CHECK(relative_error(found.by_b, reference::jacobian<2, 2>([&](const auto& d) { return zeta({}, d); })) < tolerance);
+    CHECK(relative_error(found.by_a, reference::jacobian<2, 2>([&](const auto& d) { return zeta(d, {}); })) <
+          tolerance);
+    CHECK(relative_error(found.by_b, reference::jacobian<2, 2>([&](const auto& d) { return zeta({}, d); })) <
+          tolerance);
 
     const Vector2 m = numbers.vector<2>();
     const auto expected = reference::hessian<4>([&](const Vector<4, Real>& d) {

@@ -38,9 +38,7 @@ TEST_CASE("SE(2) hat puts a twist into the Lie algebra") {
   CHECK(se2::hat({{1, 2, 3}}) == Matrix3{{0, -1, 2, 1, 0, 3, 0, 0, 0}});
 }
 
-TEST_CASE("SE(2) vee is the inverse of hat") {
-  CHECK(se2::vee(se2::hat({{1, 2, 3}})) == Twist{{1, 2, 3}});
-}
+TEST_CASE("SE(2) vee is the inverse of hat") { CHECK(se2::vee(se2::hat({{1, 2, 3}})) == Twist{{1, 2, 3}}); }
 
 TEST_CASE("SE(2) exp agrees with the matrix exponential to 50 digits") {
   CHECK(se2::exp({}).matrix() == Matrix3::identity());

@@ -18,9 +18,7 @@ struct Dual {
   friend Dual operator-(Dual a, Dual b) { return {a.value - b.value, a.rate - b.rate}; }
   friend Dual operator-(Dual a) { return {-a.value, -a.rate}; }
   friend Dual operator*(Dual a, Dual b) { return {a.value * b.value, a.value * b.rate + a.rate * b.value}; }
-  friend Dual operator/(Dual a, Dual b) {
-    return {a.value / b.value, (a.rate - a.value / b.value * b.rate) / b.value};
-  }
+  friend Dual operator/(Dual a, Dual b) { return {a.value / b.value, (a.rate - a.value / b.value * b.rate) / b.value}; }
   Dual& operator+=(Dual b) { return *this = *this + b; }
   Dual& operator*=(Dual b) { return *this = *this * b; }
   friend bool operator<(Dual a, Dual b) { return a.value < b.value; }
@@ -194,8 +192,7 @@ TEST_CASE("derivatives of the chart base Exp(x)") {
     const auto back = reference::exp(widen(x)).inverse();
     const auto tangent = [&](const Vector<3, Real>& h) { return reference::log(back * reference::exp(widen(x) + h)); };
     CHECK(relative_error(exp_chart(x), reference::jacobian<3, 3>(tangent)) < 1e-15);
-    const auto expected =
-        reference::hessian<3>([&](const Vector<3, Real>& h) { return dot(widen(g), tangent(h)); });
+    const auto expected = reference::hessian<3>([&](const Vector<3, Real>& h) { return dot(widen(g), tangent(h)); });
     CHECK(relative_error(exp_chart_curvature(x, g), expected) < 1e-14);
   }
 }

@@ -38,7 +38,8 @@ std::vector<double> with_node(const Session& session, const std::string& curve, 
 TEST_CASE("the guard refuses a step of a wire node across its wall by more than half the clearance") {
   const auto session = session_of(straight());
   Assembly& assembly = *session->assembly;
-  const std::vector<double> far = with_node(*session, "wire", 4, 0.0, 1.4), near = with_node(*session, "wire", 4, 0.0, 1.2);
+  const std::vector<double> far = with_node(*session, "wire", 4, 0.0, 1.4),
+                            near = with_node(*session, "wire", 4, 0.0, 1.2);
   CHECK(trial(assembly, far) == Code::ok);
   assembly.set_guard(0.5);
   CHECK(trial(assembly, near) == Code::ok);

@@ -142,15 +142,14 @@ TEST_CASE("a wire starts on the curve through its vessel's nodes, evenly along i
   const double *a = p, *b = p + 2 * 20, *c = p + 2 * 39;
   const double d = 2.0 * (a[0] * (b[1] - c[1]) + b[0] * (c[1] - a[1]) + c[0] * (a[1] - b[1]));
   const auto squared = [](const double* x) { return x[0] * x[0] + x[1] * x[1]; };
-  const double centre[2] = {
-      (squared(a) * (b[1] - c[1]) + squared(b) * (c[1] - a[1]) + squared(c) * (a[1] - b[1])) / d,
-      (squared(a) * (c[0] - b[0]) + squared(b) * (a[0] - c[0]) + squared(c) * (b[0] - a[0])) / d};
+  const double centre[2] = {(squared(a) * (b[1] - c[1]) + squared(b) * (c[1] - a[1]) + squared(c) * (a[1] - b[1])) / d,
+                            (squared(a) * (c[0] - b[0]) + squared(b) * (a[0] - c[0]) + squared(c) * (b[0] - a[0])) / d};
   const double angle = std::acos(-1.0) / 2.0;
   for (int i = 0; i < wire.view.nodes; ++i) {
     const double x = wire.start[at(2 * i)] - centre[0], y = wire.start[at(2 * i + 1)] - centre[1];
     CHECK(std::hypot(x, y) == doctest::Approx(20.0).epsilon(1e-5));
-    const double from_first = std::fabs(std::atan2((a[0] - centre[0]) * y - (a[1] - centre[1]) * x,
-                                                   (a[0] - centre[0]) * x + (a[1] - centre[1]) * y));
+    const double from_first = std::fabs(
+        std::atan2((a[0] - centre[0]) * y - (a[1] - centre[1]) * x, (a[0] - centre[0]) * x + (a[1] - centre[1]) * y));
     CHECK(std::fabs(from_first - angle * i / (wire.view.nodes - 1)) < 1e-4);
   }
 }

@@ -73,16 +73,19 @@ TEST_CASE("values by segment are those of the nearest node's label") {
   profile.value = {4.0, 5.0};
   CHECK(sampled(profile) == std::vector<double>{5.0, 5.0, 5.0, 5.0, 4.0, 4.0});
   profile.segment = {"eia", "aorta"};
-  CHECK(refusal(profile, curve()) == "a profile by segments without a value for segment 'cia' of 'iliac'; expected one "
-                                     "for each of its labels");
+  CHECK(refusal(profile, curve()) ==
+        "a profile by segments without a value for segment 'cia' of 'iliac'; expected one "
+        "for each of its labels");
   profile.segment = {"eia", "cia", "cfa"};
   profile.value = {4.0, 5.0, 6.0};
-  CHECK(refusal(profile, curve()) == "a value for segment 'cfa', which the geometry of 'iliac' does not label; expected "
-                                     "one of: 'cia', 'eia'; did you mean 'cia'?");
+  CHECK(refusal(profile, curve()) ==
+        "a value for segment 'cfa', which the geometry of 'iliac' does not label; expected "
+        "one of: 'cia', 'eia'; did you mean 'cia'?");
   Curve unlabelled = curve();
   unlabelled.label.clear();
-  CHECK(refusal(profile, unlabelled) == "a profile by segments, but the geometry of 'iliac' labels no segments; expected "
-                                        "a value, a table or a column");
+  CHECK(refusal(profile, unlabelled) ==
+        "a profile by segments, but the geometry of 'iliac' labels no segments; expected "
+        "a value, a table or a column");
 }
 
 }  // namespace bowstring

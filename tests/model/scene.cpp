@@ -40,7 +40,8 @@ TEST_CASE("a wire held at both ends slides; with a free end its length is fixed"
 
 TEST_CASE("a rigid vessel has no unknowns and its walls stay") {
   SmallScene scene;
-  const auto session = session_of_text(edited(scene.text(), "kinematics = \"edge-frames\"\nends", "rigid = true\nends"));
+  const auto session =
+      session_of_text(edited(scene.text(), "kinematics = \"edge-frames\"\nends", "rigid = true\nends"));
   const Curve& vessel = *session->scene->find("vessel");
   for (const FieldEntry& entry : session->assembly->entries()) {
     if (entry.unknown < vessel.unknown_begin + vessel.unknowns) CHECK(entry.block == -1);

@@ -26,8 +26,9 @@ TEST_CASE("a library without descriptor is refused after opening") {
   const PluginDescriptor* plugin = nullptr;
   const std::string library = testing::fixture_library("no-descriptor");
   CHECK(open_library(library, &plugin).text ==
-        "'" + library + "' is not a plugin library: it exports no symbol 'bowstring_plugin'; expected a shared library "
-        "whose source ends with BOWSTRING_PLUGIN");
+        "'" + library +
+            "' is not a plugin library: it exports no symbol 'bowstring_plugin'; expected a shared library "
+            "whose source ends with BOWSTRING_PLUGIN");
   CHECK(plugin == nullptr);
 }
 

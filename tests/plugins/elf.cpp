@@ -30,7 +30,10 @@ TEST_CASE("what is no shared library is refused in words") {
   ElfContents contents;
   CHECK(read_elf("", contents).text == "it is empty");
   CHECK(read_elf("#!/bin/sh\n", contents).text == "it is not an ELF file");
-  CHECK(read_elf("\x7f" "ELF", contents).text == "its ELF structure is damaged: it ends within its header");
+  CHECK(read_elf("\x7f"
+                 "ELF",
+                 contents)
+            .text == "its ELF structure is damaged: it ends within its header");
   std::string small = bytes_of(fixture_library("every-kind"));
   small[4] = 1;  // EI_CLASS: 32 bits
   CHECK(read_elf(small, contents).text == "it is an ELF file for another kind of machine, not 64-bit little-endian");
@@ -53,7 +56,8 @@ TEST_CASE("a truncated library is refused at every length") {
 TEST_CASE("a library with any byte of its headers damaged is read within its bounds") {
   const std::string bytes = bytes_of(fixture_library("no-descriptor"));
   std::uint64_t section_headers = 0;
-  for (std::size_t i = 8; i-- > 0;) section_headers = section_headers << 8 | static_cast<unsigned char>(bytes[0x28 + i]);
+  for (std::size_t i = 8; i-- > 0;)
+    section_headers = section_headers << 8 | static_cast<unsigned char>(bytes[0x28 + i]);
   REQUIRE(section_headers < bytes.size());
   int refused = 0;
   const auto damage = [&](std::size_t at) {

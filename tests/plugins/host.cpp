@@ -107,10 +107,12 @@ TEST_CASE("a name that nobody offers is answered with the nearest") {
   PluginHost host(only({folder.path()}));
   Status status = status_of(host, Kind::energy, "test-spring");
   CHECK(status.code == Code::invalid_input);
-  CHECK(status.text == "no plugin offers energy 'test-spring'; expected one of: test-springs; did you mean 'test-springs'?");
+  CHECK(status.text ==
+        "no plugin offers energy 'test-spring'; expected one of: test-springs; did you mean 'test-springs'?");
   status = status_of(host, Kind::energy, "test-floor");
   CHECK(status.code == Code::invalid_input);
-  CHECK(status.text == "no plugin offers energy 'test-floor'; expected one of: test-springs; there is constraint 'test-floor'");
+  CHECK(status.text ==
+        "no plugin offers energy 'test-floor'; expected one of: test-springs; there is constraint 'test-floor'");
 }
 
 TEST_CASE("without any plugin the search path is named") {
@@ -120,7 +122,8 @@ TEST_CASE("without any plugin the search path is named") {
         "no plugin offers solver 'ipopt'; no solver was found at all in DIR; name the folder of the plugins with "
         "--plugin-path or BOWSTRING_PLUGIN_PATH");
   PluginHost nowhere(only({}));
-  CHECK(status_of(nowhere, Kind::solver, "ipopt").text.find("found at all in an empty search path") != std::string::npos);
+  CHECK(status_of(nowhere, Kind::solver, "ipopt").text.find("found at all in an empty search path") !=
+        std::string::npos);
   PluginHost missing(only({folder.path() + "/no"}));
   CHECK(replaced(status_of(missing, Kind::solver, "ipopt").text, folder.path(), "DIR")
             .find("; note that plugin folder 'DIR/no' cannot be searched: No such file or directory") !=
@@ -171,16 +174,19 @@ TEST_CASE("another ABI is refused unopened, by its sidecar or by its file") {
   TemporaryFolder folder;
   folder.take_fixture("foreign-abi");
   const std::string advice =
-      "rebuild it against this bowstring with the compiler and standard library of that tag, or take the bowstring that "
+      "rebuild it against this bowstring with the compiler and standard library of that tag, or take the bowstring "
+      "that "
       "it was built for";
   folder.write_sidecar("bowstring_foreign-abi.so", "residual", "test-foreign", "bowstring-999/other");
   CHECK(failure(folder, Kind::residual, "test-foreign") ==
         "plugin library 'DIR/bowstring_foreign-abi.so' was built for another ABI: its sidecar says "
-        "'bowstring-999/other', this bowstring is 'TAG'; " + advice);
+        "'bowstring-999/other', this bowstring is 'TAG'; " +
+            advice);
   folder.write_sidecar("bowstring_foreign-abi.so", "residual", "test-foreign", host_abi_tag());
   CHECK(failure(folder, Kind::residual, "test-foreign") ==
         "plugin library 'DIR/bowstring_foreign-abi.so' was built for another ABI: section .bowstring.abi says "
-        "'bowstring-999/gxx-abi-1017/libstdc++-cxx11/double', this bowstring is 'TAG'; " + advice);
+        "'bowstring-999/gxx-abi-1017/libstdc++-cxx11/double', this bowstring is 'TAG'; " +
+            advice);
   CHECK_FALSE(is_open(folder.path() + "/bowstring_foreign-abi.so"));
 }
 
@@ -197,16 +203,18 @@ TEST_CASE("a file that is not a plugin is refused in words") {
   folder.take_fixture("no-descriptor");
   folder.write_sidecar("bowstring_no-descriptor.so", "writer", "test-none", host_abi_tag());
   CHECK(failure(folder, Kind::writer, "test-none") ==
-        "'DIR/bowstring_no-descriptor.so' is not a plugin library: it exports no symbol 'bowstring_plugin'" + expectation);
+        "'DIR/bowstring_no-descriptor.so' is not a plugin library: it exports no symbol 'bowstring_plugin'" +
+            expectation);
 }
 
 TEST_CASE("a library that cannot be opened is refused with the loader's reason alone") {
   TemporaryFolder folder;
   folder.take_fixture("unresolved");
   folder.write_sidecar("bowstring_unresolved.so", "residual", "test-unresolved", host_abi_tag());
-  CHECK(failure(folder, Kind::residual, "test-unresolved") ==
-        "plugin library 'DIR/bowstring_unresolved.so' cannot be opened: undefined symbol: missing_function; rebuild it, "
-        "and install the libraries that it needs (ldd names them)");
+  CHECK(
+      failure(folder, Kind::residual, "test-unresolved") ==
+      "plugin library 'DIR/bowstring_unresolved.so' cannot be opened: undefined symbol: missing_function; rebuild it, "
+      "and install the libraries that it needs (ldd names them)");
 }
 
 TEST_CASE("a sidecar that does not fit its library is refused") {
@@ -245,8 +253,9 @@ TEST_CASE("the plugins beside the binary are found by its list, and what was not
   CHECK(status_of(host, Kind::energy, "test-springs").ok());
   const Status status = status_of(host, Kind::solver, "ipopt");
   CHECK(status.code == Code::failed);
-  CHECK(status.text == "plugin solver/ipopt is known but was not built; install coinor-libipopt-dev and configure the "
-                       "build with -Dipopt=enabled");
+  CHECK(status.text ==
+        "plugin solver/ipopt is known but was not built; install coinor-libipopt-dev and configure the "
+        "build with -Dipopt=enabled");
 }
 
 TEST_CASE("this build's own plugins are found from its binary") {

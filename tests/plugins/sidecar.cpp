@@ -35,7 +35,7 @@ TEST_CASE("a sidecar that cannot be used is named with the reason") {
     Sidecar sidecar;
     return replaced(read_sidecar(file, sidecar).text, folder.path(), "DIR");
   };
-  CHECK(text("{") .find("plugin sidecar 'DIR/x.bowstring.json' is of no use: ") == 0);
+  CHECK(text("{").find("plugin sidecar 'DIR/x.bowstring.json' is of no use: ") == 0);
   CHECK(text("{").find("parse error") != std::string::npos);
   CHECK(text("{}").find("'file'") != std::string::npos);
   CHECK(text(R"({"file": "a.so", "interface_version": 1, "abi_tag": "", "components": [{"kind": "enrgy"}]})") ==

@@ -26,8 +26,8 @@ struct Outcome {
 Outcome run_tool(const std::string& library) {
   TemporaryFolder folder;
   const std::string output = folder.path() + "/out.bowstring.json";
-  const std::string command = std::string(std::getenv("BOWSTRING_BUILD_ROOT")) + "/plugins/sidecar/bowstring-sidecar '" +
-                              library + "' '" + output + "' 2>&1";
+  const std::string command = std::string(std::getenv("BOWSTRING_BUILD_ROOT")) +
+                              "/plugins/sidecar/bowstring-sidecar '" + library + "' '" + output + "' 2>&1";
   Outcome outcome;
   std::FILE* pipe = ::popen(command.c_str(), "r");
   REQUIRE(pipe != nullptr);
@@ -60,9 +60,10 @@ TEST_CASE("the sidecar tool writes the sidecar of a good plugin") {
 
 TEST_CASE("the build gate: one exported symbol") {
   const std::string text = refused("two-symbols").text;
-  CHECK(contains(text, "plugin library 'DIR/bowstring_two-symbols.so' is refused: a plugin exports the one symbol "
-                       "bowstring_plugin; compile with -fvisibility=hidden and link with the SDK's plugin.map; it "
-                       "exports"));
+  CHECK(contains(text,
+                 "plugin library 'DIR/bowstring_two-symbols.so' is refused: a plugin exports the one symbol "
+                 "bowstring_plugin; compile with -fvisibility=hidden and link with the SDK's plugin.map; it "
+                 "exports"));
   CHECK(contains(text, "\n  bowstring_plugin\n"));
   CHECK(contains(text, "\n  leaked_helper\n"));
 }
@@ -75,22 +76,27 @@ constexpr bool makes_unique_symbols = true;
 
 TEST_CASE("the build gate: no GNU_UNIQUE symbol" * doctest::skip(!makes_unique_symbols)) {
   const std::string text = refused("unique-symbol").text;
-  CHECK(contains(text, "is refused: it has GNU_UNIQUE symbols, which all plugins of a process share; compile with "
-                       "-fno-gnu-unique and link with the SDK's plugin.map:\n  _ZN6SharedIiE5valueE\n"));
+  CHECK(contains(text,
+                 "is refused: it has GNU_UNIQUE symbols, which all plugins of a process share; compile with "
+                 "-fno-gnu-unique and link with the SDK's plugin.map:\n  _ZN6SharedIiE5valueE\n"));
 }
 
 TEST_CASE("the sidecar tool refuses what the host could not open") {
   CHECK(contains(refused("foreign-abi").text,
                  "plugin library 'DIR/bowstring_foreign-abi.so' was built for another ABI: section .bowstring.abi says "
                  "'bowstring-999/gxx-abi-1017/libstdc++-cxx11/double', this bowstring is 'TAG'; rebuild it"));
-  CHECK(contains(refused("no-descriptor").text, "a plugin exports the one symbol bowstring_plugin; compile with "
-                                                "-fvisibility=hidden and link with the SDK's plugin.map; it exports none"));
-  CHECK(contains(refused("wrong-magic").text, "'DIR/bowstring_wrong-magic.so' exports a 'bowstring_plugin' that is no "
-                                              "plugin descriptor of this bowstring; rebuild it"));
-  CHECK(contains(refused("unresolved").text, "plugin library 'DIR/bowstring_unresolved.so' cannot be opened: undefined "
-                                             "symbol: missing_function; rebuild it"));
-  CHECK(contains(refused("bad-name").text, "offers a component whose name 'Wire_Bending' is not lower-case words joined "
-                                           "by hyphens; mend its line in BOWSTRING_PLUGIN"));
+  CHECK(contains(refused("no-descriptor").text,
+                 "a plugin exports the one symbol bowstring_plugin; compile with "
+                 "-fvisibility=hidden and link with the SDK's plugin.map; it exports none"));
+  CHECK(contains(refused("wrong-magic").text,
+                 "'DIR/bowstring_wrong-magic.so' exports a 'bowstring_plugin' that is no "
+                 "plugin descriptor of this bowstring; rebuild it"));
+  CHECK(contains(refused("unresolved").text,
+                 "plugin library 'DIR/bowstring_unresolved.so' cannot be opened: undefined "
+                 "symbol: missing_function; rebuild it"));
+  CHECK(contains(refused("bad-name").text,
+                 "offers a component whose name 'Wire_Bending' is not lower-case words joined "
+                 "by hyphens; mend its line in BOWSTRING_PLUGIN"));
 }
 
 TEST_CASE("the sidecar tool refuses a file that is not a library") {

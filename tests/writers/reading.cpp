@@ -22,8 +22,10 @@ std::string refusal(const std::string& document) {
 TEST_CASE("writers name what a document lacks, and where") {
   const std::string mend = "; give the document that `bowstring solve --json` prints";
   const std::string good = small_result(2);
-  CHECK(refusal("{\"format\":\n  oops}") == "line 2, column 3: found text that is not JSON, expected a "
-                                            "\"bowstring.result/1\" document" + mend);
+  CHECK(refusal("{\"format\":\n  oops}") ==
+        "line 2, column 3: found text that is not JSON, expected a "
+        "\"bowstring.result/1\" document" +
+            mend);
   CHECK(refusal("[]") == "format: found null, expected \"bowstring.result/1\"" + mend);
   CHECK(refusal(edited_result(good, "bowstring.result/1", "bowstring.result/9")) ==
         "format: found \"bowstring.result/9\", expected \"bowstring.result/1\"" + mend);
@@ -37,7 +39,8 @@ TEST_CASE("writers name what a document lacks, and where") {
         "curves[0].points[1]: found 3 numbers, expected 2 numbers" + mend);
   CHECK(refusal(edited_result(good, "\"s_mm\": 70,", "\"s_mm\": \"far\",")) ==
         "contacts[1].s_mm: found \"far\", expected a number or null" + mend);
-  CHECK(refusal(edited_result(good, "{\"on\": \"iliac\", \"end\": \"last\"}", "{\"on\": \"aorta\", \"end\": \"last\"}")) ==
+  CHECK(refusal(
+            edited_result(good, "{\"on\": \"iliac\", \"end\": \"last\"}", "{\"on\": \"aorta\", \"end\": \"last\"}")) ==
         "supports[1].on: found \"aorta\", expected the name of a curve of this document" + mend);
 }
 

@@ -26,12 +26,15 @@ std::string small_result(int dimension) {
  "energy": {"total": 12.5},
  "quantities": {"peak_displacement_mm": 2.0, "contact_count": 2, "contact_force_N": 5.0},
  "curves": [
-  {"name": "iliac", "kind": "vessel", "s_mm": [0, 50.04, 100.08], "points": [)" + low + ", " + moved + ", " + high + R"(],
-   "reference_points": [)" + low + ", " + middle + ", " + high + R"(], "radius_mm": [6, 5, 6],
+  {"name": "iliac", "kind": "vessel", "s_mm": [0, 50.04, 100.08], "points": [)" +
+         low + ", " + moved + ", " + high + R"(],
+   "reference_points": [)" +
+         low + ", " + middle + ", " + high + R"(], "radius_mm": [6, 5, 6],
    "curvature_per_mm": [0, 0.0016, 0]},
-  {"name": "wire, stiff", "kind": "wire", "s_mm": [0, 30, 70, 100], "points": [)" + low + ", " +
-         point("30, 0", "1") + ", " + point("70, 0", "1") + ", " + high + R"(], "reference_points": [)" + low + ", " +
-         point("30, 0", "1") + ", " + point("70, 0", "1") + ", " + high + R"(], "radius_mm": [0.4, 0.4, 0.4, 0.4],
+  {"name": "wire, stiff", "kind": "wire", "s_mm": [0, 30, 70, 100], "points": [)" +
+         low + ", " + point("30, 0", "1") + ", " + point("70, 0", "1") + ", " + high + R"(], "reference_points": [)" +
+         low + ", " + point("30, 0", "1") + ", " + point("70, 0", "1") + ", " + high +
+         R"(], "radius_mm": [0.4, 0.4, 0.4, 0.4],
    "curvature_per_mm": [0, 0, 0, null]}],
  "contacts": [
   {"wire": "wire, stiff", "vessel": "iliac", "s_mm": 30, "force_N": 1.0},

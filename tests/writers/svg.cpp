@@ -78,9 +78,8 @@ TEST_CASE("svg: a figure in the plane is one view of both states, with circles w
 
 TEST_CASE("svg: every contact with a force has its circle, and its radius grows with the force") {
   const std::string last = "\"s_mm\": 70, \"force_N\": 4.0}";
-  const std::string svg = figure(edited_result(
-      small_result(2), last,
-      last + R"(, {"wire": "wire, stiff", "s_mm": 100, "force_N": 2.0},
+  const std::string svg =
+      figure(edited_result(small_result(2), last, last + R"(, {"wire": "wire, stiff", "s_mm": 100, "force_N": 2.0},
         {"wire": "wire, stiff", "s_mm": 0, "force_N": 0.01}, {"wire": "wire, stiff", "s_mm": 30, "force_N": 1e-9}, {"wire": "wire, stiff", "s_mm": 70, "force_N": null},
         {"wire": "wire, stiff", "s_mm": null, "force_N": 3.0})"));
   check_well_formed(svg);
@@ -108,8 +107,9 @@ TEST_CASE("svg: ends that are held in the same place share a symbol") {
 }
 
 TEST_CASE("svg: what is drawn and written lies on the page") {
-  const std::string title = "A title that is so long that no page could hold it in a single line, because it "
-                            "tells all that there is to tell about the scene";
+  const std::string title =
+      "A title that is so long that no page could hold it in a single line, because it "
+      "tells all that there is to tell about the scene";
   for (const int dimension : {2, 3}) {
     const std::string svg = figure(edited_result(small_result(dimension), "Small & straight", title));
     check_well_formed(svg);
@@ -168,8 +168,9 @@ TEST_CASE("svg: a document without any finite point is refused") {
     "points": [[null, null]], "reference_points": [[null, null]]}]})";
   const Written result = written("svg", document);
   CHECK_FALSE(result.good);
-  CHECK(result.text == "curves: found no point with finite coordinates, expected at least one; look at the document's "
-                       "status and reason");
+  CHECK(result.text ==
+        "curves: found no point with finite coordinates, expected at least one; look at the document's "
+        "status and reason");
 }
 
 TEST_CASE("svg: scale bars are 1, 2 or 5 times a power of ten") {

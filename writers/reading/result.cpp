@@ -34,8 +34,8 @@ Json parse(const char* text) {
     const auto line = 1 + std::count(text, stop, '\n');
     const char* start = stop;
     while (start != text && start[-1] != '\n') --start;
-    refuse("line " + std::to_string(line) + ", column " + std::to_string(stop - start + 1),
-           "text that is not JSON", "a \"bowstring.result/1\" document");
+    refuse("line " + std::to_string(line) + ", column " + std::to_string(stop - start + 1), "text that is not JSON",
+           "a \"bowstring.result/1\" document");
   }
 }
 
@@ -109,7 +109,8 @@ ResultCurve read_curve(const Json& table, int dimension, const std::string& wher
   ResultCurve curve;
   curve.name = text(table, "name");
   const std::string kind = text(table, "kind");
-  if (kind != "wire" && kind != "vessel") refuse(where + ".kind", found(member(table, "kind")), "\"wire\" or \"vessel\"");
+  if (kind != "wire" && kind != "vessel")
+    refuse(where + ".kind", found(member(table, "kind")), "\"wire\" or \"vessel\"");
   curve.wire = kind == "wire";
   curve.points = points(table, "points", dimension, where);
   curve.reference = points(table, "reference_points", dimension, where);

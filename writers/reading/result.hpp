@@ -12,11 +12,11 @@ namespace bowstring {
 struct ResultCurve {
   std::string name;
   bool wire = false;
-  std::vector<Vector3> points;      ///< State 2, mm; third coordinate 0 in the plane
-  std::vector<Vector3> reference;   ///< State 1, mm
-  std::vector<double> arc;          ///< State 2 arc length from the first end, mm
-  std::vector<double> radius;       ///< mm
-  std::vector<double> curvature;    ///< 1/mm
+  std::vector<Vector3> points;     ///< State 2, mm; third coordinate 0 in the plane
+  std::vector<Vector3> reference;  ///< State 1, mm
+  std::vector<double> arc;         ///< State 2 arc length from the first end, mm
+  std::vector<double> radius;      ///< mm
+  std::vector<double> curvature;   ///< 1/mm
 
   int nodes() const noexcept { return static_cast<int>(points.size()); }
 };

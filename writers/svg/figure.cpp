@@ -61,12 +61,14 @@ std::string svg_figure(const Result& result) {
   const std::string body = draw_panels(result, layout) + draw_legend(result, layout, height);
   const std::string width_text = two_decimals(layout.width), height_text = two_decimals(height);
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-         "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"" + width_text + "\" height=\"" +
-         height_text +
-         "\" viewBox=\"0 0 " + width_text + " " + height_text +
+         "<svg xmlns=\"http://www.w3.org/2000/svg\" version=\"1.1\" width=\"" +
+         width_text + "\" height=\"" + height_text + "\" viewBox=\"0 0 " + width_text + " " + height_text +
          "\" font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12\">\n"
-         "<title>" + escaped(result.title.empty() ? "Bowstring" : result.title) + "</title>\n"
-         "<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n" + head + body + "</svg>\n";
+         "<title>" +
+         escaped(result.title.empty() ? "Bowstring" : result.title) +
+         "</title>\n"
+         "<rect width=\"100%\" height=\"100%\" fill=\"#FFFFFF\"/>\n" +
+         head + body + "</svg>\n";
 }
 
 }  // namespace bowstring

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double greatest_height = 640.0;  // of all drawings together
 constexpr double between = 30.0;
-constexpr double border = 20.0;            // room for the symbols at the ends of curves
-constexpr double scale_bar_part = 0.18;    // of the drawing's width, at most
+constexpr double border = 20.0;          // room for the symbols at the ends of curves
+constexpr double scale_bar_part = 0.18;  // of the drawing's width, at most
 
 struct Extent {
   Vector2 lower{{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}};
@@ -72,8 +72,9 @@ Layout arrange(const Result& result, double top) {
   for (const View& view : choose_views(result)) {
     extents.push_back(extent(result, view));
     if (extents.back().empty()) {
-      throw StatusError(Code::invalid_input, "curves: found no point with finite coordinates, expected at least one; "
-                                             "look at the document's status and reason");
+      throw StatusError(Code::invalid_input,
+                        "curves: found no point with finite coordinates, expected at least one; "
+                        "look at the document's status and reason");
     }
     width = std::max(width, extents.back().size()[0]);
     height += extents.back().size()[1];

@@ -9,8 +9,8 @@ namespace bowstring {
 /// One view's place on the page. Coordinates of the page are in px, y downwards.
 struct Panel {
   View view;
-  Vector2 origin;          ///< page position of the projection of (0, 0, 0)
-  double scale = 1.0;      ///< px per mm, the same in all panels
+  Vector2 origin;      ///< page position of the projection of (0, 0, 0)
+  double scale = 1.0;  ///< px per mm, the same in all panels
   double top = 0.0, height = 0.0;
 
   Vector2 place(const Vector3& point) const;
@@ -19,8 +19,8 @@ struct Panel {
 struct Layout {
   std::vector<Panel> panels;
   double width = 0.0;
-  double bottom = 0.0;          ///< below the last panel
-  double scale_bar_mm = 0.0;    ///< 1, 2 or 5 times a power of ten
+  double bottom = 0.0;        ///< below the last panel
+  double scale_bar_mm = 0.0;  ///< 1, 2 or 5 times a power of ten
 };
 
 constexpr double page_width = 960.0;

@@ -12,9 +12,9 @@ namespace bowstring {
 namespace {
 
 constexpr double row_height = 26.0;
-constexpr double sample_width = 30.0;     // of an entry's symbol
+constexpr double sample_width = 30.0;  // of an entry's symbol
 constexpr double between_entries = 24.0;
-constexpr double character_width = 6.7;   // of a sans-serif font of 12 px, on average
+constexpr double character_width = 6.7;  // of a sans-serif font of 12 px, on average
 constexpr double bar_tick = 4.0;
 
 /// A symbol drawn in a box `sample_width` wide around a baseline at y = 0, with its text.
@@ -43,10 +43,9 @@ Entry lumen_entry() {
 Entry reference_entry() {
   std::string symbol;
   for (const double y : {-7.0, 7.0}) {
-    symbol += line({{0.0, y}}, {{sample_width, y}},
-                   {{"stroke", style::state1},
-                    {"stroke-width", style::wall_width},
-                    {"stroke-dasharray", style::wall1_dashes}});
+    symbol += line(
+        {{0.0, y}}, {{sample_width, y}},
+        {{"stroke", style::state1}, {"stroke-width", style::wall_width}, {"stroke-dasharray", style::wall1_dashes}});
   }
   return {symbol + sample_line(style::state1, style::centerline_width, style::centerline1_dashes), "vessel, State 1"};
 }
@@ -79,9 +78,9 @@ std::vector<Entry> entries(const Result& result) {
   }
   if (const double largest = style::largest_force(result); largest > 0.0) out.push_back(contact_entry(largest));
   if (!result.supports.empty()) {
-    out.push_back({open_group(support_attributes()) + support_symbol({{0.5 * sample_width, -6.0}}, {{0.0, 1.0}}) +
-                       close_group(),
-                   "held end"});
+    out.push_back(
+        {open_group(support_attributes()) + support_symbol({{0.5 * sample_width, -6.0}}, {{0.0, 1.0}}) + close_group(),
+         "held end"});
   }
   return out;
 }

@@ -9,11 +9,11 @@ namespace bowstring {
 
 namespace {
 
-constexpr double support_height = 11.0;      // px
+constexpr double support_height = 11.0;  // px
 constexpr double support_half_width = 6.5;
 constexpr double axis_length = 22.0;
 constexpr double arrow_head = 4.5;
-constexpr double foreshortened = 0.25;       // of an axis' length: an arrow is not longer than its head then
+constexpr double foreshortened = 0.25;  // of an axis' length: an arrow is not longer than its head then
 constexpr double axis_end_radius = 3.6;
 constexpr const char* axis_name[] = {"x", "y", "z"};
 
