@@ -121,6 +121,7 @@ int list_plugins(const CommonOptions& common, const std::string& kind, bool json
     if (!parsed) return exit_wrong_input;
     kinds.push_back(*parsed);
   }
+  for (const std::string& problem : host.problems()) std::fprintf(stderr, "warning: %s\n", problem.c_str());
   Json out = Json::array();
   for (const Kind k : kinds) {
     for (const std::string& name : host.names(k)) {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/assembly/euclidean.hpp"
+#include "core/model/declarations.hpp"
 #include "core/model/manifold.hpp"
 
 namespace bowstring {
@@ -325,6 +326,9 @@ Status Assembly::new_epoch() noexcept {
       const int rows = use.rows.rows;
       Status status = use.constraint->rebind(use.rows);
       if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
+      if (const std::string flaw = flaw_of(use.rows); !flaw.empty()) {
+        return Status::failure(Code::failed, "constraint '" + use.label + "' " + flaw);
+      }
       if (use.rows.rows != rows) {
         return Status::failure(Code::failed, "constraint '" + use.label + "' changed its number of rows in an epoch");
       }

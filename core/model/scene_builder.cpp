@@ -5,6 +5,7 @@
 #include "core/contact/centerline.hpp"
 #include "core/curve/arc_length.hpp"
 #include "core/curve/spline_curve.hpp"
+#include "core/model/declarations.hpp"
 #include "core/model/manifold.hpp"
 #include "core/model/scene.hpp"
 
@@ -89,6 +90,16 @@ class Builder {
     return false;
   }
 
+  /// Keeps what is wrong with a declaration as the plugin's failure.
+  bool sound(const std::string& flaw, const ComponentChoice& choice, const std::string& owner) {
+    if (flaw.empty()) return true;
+    if (plugin_failure_.ok()) {
+      plugin_failure_ = Status::failure(Code::failed, std::string(kind_name(choice.kind)) + " '" + choice.name +
+                                                          "' of " + owner + " " + flaw);
+    }
+    return false;
+  }
+
   void set_geometry(Curve& curve, CurveGeometry&& geometry);
   bool check_points(const Curve& curve, const std::string& position);
   void set_ends(Curve& curve, const EndTable* ends);
@@ -103,7 +114,6 @@ class Builder {
   void declare_energies();
   void note_without_effect(const EnergyUse& use);
   void declare_kinematics();
-  bool check_declaration(const Curve& curve, const ComponentChoice& choice);
   void sample_laws();
   bool sample_law(EnergyUse& use, LawUse& law, const ComponentChoice& choice);
   void declare_constraints();
@@ -304,6 +314,7 @@ void Builder::add_vessel(const VesselTable& table) {
           "one curve", "");
     return;
   }
+  if (!sound(flaw_of(graph.curves.front(), composition_.dimension), table.geometry, "'" + table.name + "'")) return;
   scene_->warnings.insert(scene_->warnings.end(), graph.warnings.begin(), graph.warnings.end());
   set_geometry(*curve, std::move(graph.curves.front()));
   if (!check_points(*curve, table.geometry.position)) return;
@@ -427,6 +438,7 @@ void Builder::declare_energies() {
     status = use.energy->declare(curve->view, use.declaration);
     if (!status.ok()) status.text = "energy '" + table.label + "' on '" + table.on + "': " + status.text;
     if (!passed(status, table.component)) continue;
+    if (!sound(flaw_of(use.declaration, use.parameters), table.component, "'" + table.on + "'")) continue;
     const Needs& needs = use.declaration.needs;
     curve->needs.stretch = curve->needs.stretch || needs.stretch;
     if (needs.material_frames) {
@@ -451,41 +463,6 @@ void Builder::note_without_effect(const EnergyUse& use) {
   }
 }
 
-bool Builder::check_declaration(const Curve& curve, const ComponentChoice& choice) {
-  const auto broken = [&](const std::string& what) {
-    plugin_failure_ = Status::failure(Code::failed, "kinematics '" + choice.name + "' of '" + curve.name + "' " + what);
-    return false;
-  };
-  for (const FieldDeclaration& field : curve.declaration.fields) {
-    const auto numbers = at(field.count * coordinate_count(field.manifold, field.dimension));
-    const auto tangents = at(field.count * tangent_count(field.manifold, field.dimension));
-    if (field.reference.size() != numbers || field.start.size() != numbers) {
-      return broken("declares field '" + field.name + "' with coordinates that do not fit its count");
-    }
-    if (!field.fixed.empty() && field.fixed.size() != tangents) {
-      return broken("declares field '" + field.name + "' with 'fixed' flags that do not fit its count");
-    }
-    for (int i = 0; is_curved(field.manifold) && !field.fixed.empty() && i < field.count; ++i) {
-      const auto first = field.fixed.begin() + i * tangent_count(field.manifold, field.dimension);
-      const auto free = std::count(first, first + tangent_count(field.manifold, field.dimension), 0);
-      if (free != 0 && free != tangent_count(field.manifold, field.dimension)) {
-        return broken("holds entry " + std::to_string(i) + " of field '" + field.name +
-                      "' in part; a rotation or direction is held as a whole");
-      }
-    }
-  }
-  for (const SiteDeclaration& site : curve.declaration.sites) {
-    const bool stencil_fits = site.stencil.size() == at(site.count * site.width);
-    const bool known =
-        std::all_of(site.stencil.begin(), site.stencil.end(), [&](int u) { return u >= -1 && u < curve.unknowns; });
-    if (!stencil_fits || !known || site.values > 8 || site.width > 32) {
-      return broken("declares a site whose stencil does not fit its unknowns");
-    }
-  }
-  if (curve.site(Site::node) == nullptr) return broken("declares no node positions");
-  return true;
-}
-
 void Builder::declare_kinematics() {
   for (std::size_t c = 0; c < scene_->curves.size(); ++c) {
     Curve& curve = *scene_->curves[c];
@@ -500,7 +477,7 @@ void Builder::declare_kinematics() {
       curve.coordinates += field.count * coordinate_count(field.manifold, field.dimension);
       curve.unknowns += field.count * tangent_count(field.manifold, field.dimension);
     }
-    if (!check_declaration(curve, choice)) return;
+    if (!sound(flaw_of(curve.declaration, curve.unknowns), choice, "'" + curve.name + "'")) return;
     curve.coordinate_begin = scene_->coordinates;
     curve.unknown_begin = scene_->unknowns;
     scene_->coordinates += curve.coordinates;
@@ -576,6 +553,7 @@ void Builder::declare_constraints() {
     status = use.constraint->declare(use.scene, use.rows);
     if (!status.ok()) status.text = "constraint '" + table.label + "': " + status.text;
     if (!passed(status, table.component)) continue;
+    if (!sound(flaw_of(use.rows), table.component, "'" + table.label + "'")) continue;
     for (const std::string& warning : use.rows.warnings) scene_->warnings.push_back(warning);
     scene_->constraints.push_back(std::move(use));
   }

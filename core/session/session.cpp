@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/certificate/multipliers.hpp"
+#include "core/model/declarations.hpp"
 
 namespace bowstring {
 
@@ -23,6 +24,14 @@ void refuse(const Status& status, const ComponentChoice& choice, Refusal& refusa
   }
 }
 
+Status admits(const SolverTraits& traits, const ProblemSummary& problem) {
+  const char* refused = !traits.equalities && problem.equalities > 0        ? "it takes no equality rows"
+                        : !traits.inequalities && problem.inequalities > 0 ? "it takes no inequality rows"
+                        : !traits.bounds && problem.bounded_unknowns       ? "it takes no bounds on unknowns"
+                                                                           : nullptr;
+  return refused == nullptr ? Status{} : Status::failure(Code::unsupported, refused);
+}
+
 /// Asks the solver whether it can take what the enforcement leaves of the problem.
 void check_pair(const Session& session, Refusal& refusal) {
   ProblemSummary remaining;
@@ -31,7 +40,8 @@ void check_pair(const Session& session, Refusal& refusal) {
     status.text = "enforcement '" + session.composition.enforcement.name + "': " + status.text;
     return refuse(status, session.composition.enforcement, refusal);
   }
-  status = session.solver->can(remaining);
+  status = admits(session.solver->traits(), remaining);
+  if (status.ok()) status = session.solver->can(remaining);
   if (status.ok()) return;
   std::string groups;
   for (const RowGroup& group : remaining.row_groups) groups += (groups.empty() ? "" : ", ") + group.text;
@@ -89,6 +99,11 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
   SolverContext context;
   context.on_iteration = progress;
   Status status = session.enforcement->solve(assembly, *session.solver, start, context, solution.solver);
+  if (const std::string flaw = flaw_of(solution.solver, assembly); status.ok() && !flaw.empty()) {
+    status = Status::failure(Code::failed, "it " + flaw);
+    solution.solver.q.clear();
+    solution.solver.multipliers.clear();
+  }
   if (!status.ok()) {
     solution.solver.claim = Claim::failed;
     solution.solver.reason = "solver '" + session.composition.solver.name + "': " + status.text;
