@@ -49,26 +49,6 @@ Status screened(Status status, const std::vector<double>& numbers, const SiteDec
 
 }  // namespace
 
-const char* site_name(Site site) noexcept {
-  switch (site) {
-    case Site::node:
-      return "node";
-    case Site::station:
-      return "station";
-    case Site::edge:
-      return "edge";
-    case Site::frame:
-      return "frame";
-    case Site::length:
-      return "length";
-    case Site::field:
-      return "field";
-    case Site::closure:
-      break;
-  }
-  return "closure row";
-}
-
 SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration) {
   SiteTable table;
   table.curve = curve.view.index;

@@ -39,9 +39,6 @@ struct SiteTable {
   void add_hessian(double factor, double* hessian) const noexcept;
 };
 
-/// "node", "station", …, for messages.
-const char* site_name(Site site) noexcept;
-
 SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration);
 
 }  // namespace bowstring

@@ -73,7 +73,10 @@ std::vector<std::string> data_files(const Composition& composition) {
     add_paths(vessel.geometry.parameters, out);
     add_paths(vessel.kinematics.parameters, out);
   }
-  for (const WireTable& wire : composition.wires) add_paths(wire.kinematics.parameters, out);
+  for (const WireTable& wire : composition.wires) {
+    if (wire.geometry) add_paths(wire.geometry->parameters, out);
+    add_paths(wire.kinematics.parameters, out);
+  }
   for (const EnergyTable& energy : composition.energies) add_paths(energy.component.parameters, out);
   for (const ConstraintTable& constraint : composition.constraints) add_paths(constraint.component.parameters, out);
   add_paths(composition.enforcement.parameters, out);

@@ -48,12 +48,17 @@ struct VesselTable {
   std::string position;
 };
 
+/// What the user says of a wire's length in the body; `by_ends`: it slides where both ends are held along a vessel.
+enum class LengthRule : int { by_ends, sliding, fixed };
+
 struct WireTable {
   std::string name;
-  std::string vessel;  ///< "" where the wire has its own geometry
-  std::optional<ComponentChoice> geometry;
-  int nodes = 0;          ///< 0: the vessel's or the geometry's
-  ParameterValue radius;  ///< a profile
+  std::string vessel;                       ///< that it starts along; "" where there is none
+  std::optional<ComponentChoice> geometry;  ///< its own State 1, instead of the vessel's centerline
+  LengthRule length = LengthRule::by_ends;
+  std::string length_position;  ///< where the user says so
+  int nodes = 0;                ///< 0: the vessel's or the geometry's
+  ParameterValue radius;        ///< a profile
   ComponentChoice kinematics;
   EndTable end[2];
   std::string position;

@@ -30,11 +30,19 @@ Span<const ParameterDeclaration> vessel_schema() {
   return {schema, std::size(schema)};
 }
 
+ParameterDeclaration length_declaration() {
+  ParameterDeclaration length{"length", ParameterType::choice, "", "",
+                              "whether the wire's length in the body is an unknown or that of State 1"};
+  length.choices = "sliding|fixed";
+  return length;
+}
+
 Span<const ParameterDeclaration> wire_schema() {
   static const ParameterDeclaration schema[] = {
       {"nodes", ParameterType::integer, "", "", "nodes of the wire's own mesh, otherwise as many as its vessel has", 3,
        1e6},
       radius_declaration(nullptr, "outer radius"),
+      length_declaration(),
   };
   return {schema, std::size(schema)};
 }
@@ -192,18 +200,29 @@ WireTable read_wire(const Node& table, const CurveNames& names, Reading& reading
   check_name(table, name, reading.report);
 
   SchemaOwner owner = owner_of(name);
-  owner.structural = {"name", "vessel", "ends", "kinematics"};
-  owner.later = {"geometry", "length", "span", "spacing"};
+  owner.structural = {"name", "vessel", "geometry", "ends", "kinematics"};
+  owner.later = {"span", "spacing"};
   Status no_fault;
   const ParameterSet values = read_parameters(table, owner, wire_schema(), no_fault, reading.report);
   wire.nodes = values.has("nodes") ? static_cast<int>(values.integer("nodes")) : 0;
   if (values.has("radius")) wire.radius = values.at("radius");
+  if (values.has("length")) {
+    wire.length = values.text("length") == "sliding" ? LengthRule::sliding : LengthRule::fixed;
+    wire.length_position = values.at("length").position;
+  }
+  const bool own_geometry = table.find("geometry") != nullptr;
+  if (own_geometry) wire.geometry = read_geometry(table, name, reading);
+  if (own_geometry && wire.nodes > 0) {
+    reading.report.error(table.find("nodes")->value.position, "'nodes' of " + name + " beside a geometry of its own",
+                         "the nodes of that geometry", "write them as 'nodes' of the geometry");
+  }
 
   if (const Entry* vessel = table.find("vessel")) {
     check_reference(vessel->value, "'vessel' of " + name, "vessel", names.vessels, names, reading.report);
-  } else {
-    reading.report.error(table.position, name + " has no 'vessel'", "the vessel that the wire starts along",
-                         "add vessel = \"<name>\"");
+  } else if (!own_geometry) {
+    reading.report.error(table.position, name + " has no 'vessel' and no 'geometry'",
+                         "the vessel that the wire starts along, or a geometry of its own",
+                         "add vessel = \"<name>\", or geometry = { type = \"<geometry>\", … }");
   }
   wire.kinematics = read_kinematics(table, name, reading);
   read_ends(table, name, wire.end, reading);

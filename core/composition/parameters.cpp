@@ -1,5 +1,6 @@
 #include "core/composition/parameters.hpp"
 
+#include <cctype>
 #include <cstddef>
 #include <sstream>
 #include <utility>
@@ -26,7 +27,8 @@ std::string expectation(const ParameterDeclaration& declaration) {
   const std::string bounds = expected_bounds(declaration.lower, declaration.upper, declaration.lower_exclusive, "");
   switch (declaration.type) {
     case ParameterType::scalar:
-      return expected_number(rules);
+      return expected_number(rules) +
+             (*declaration.choices == '\0' ? "" : ", or " + quoted_alternatives(split_choices(declaration.choices)));
     case ParameterType::profile:
       return expected_number(rules) + ", or a table with 'table', 'segments' or 'column'";
     case ParameterType::vector:
@@ -131,6 +133,12 @@ class ValueReader {
   }
 
   bool read_scalar(const Node& node) {
+    if (!node.text.empty() && contains_name(split_choices(declaration_.choices), node.text)) {
+      value_.text = node.text;
+      return true;
+    }
+    const bool is_word = !node.text.empty() && std::isalpha(static_cast<unsigned char>(node.text.front())) != 0;
+    if (*declaration_.choices != '\0' && is_word) return fail_type(node);
     const std::optional<Number> number = read_number(node, subject_, rules_, report_);
     if (!number) return false;
     value_.number = number->value;

@@ -61,7 +61,7 @@ Json value_json(const ParameterValue& value, const ParameterDeclaration& declara
   const NumberWriter number(declaration, value.unit_alternative);
   switch (value.type) {
     case ParameterType::scalar:
-      return number(value.number);
+      return value.text.empty() ? Json(number(value.number)) : Json(value.text);
     case ParameterType::profile:
       return profile_json(value.profile, number);
     case ParameterType::integer:
@@ -134,9 +134,10 @@ Json vessel_json(const VesselTable& vessel) {
 Json wire_json(const WireTable& wire) {
   Json table;
   table["name"] = wire.name;
-  table["vessel"] = wire.vessel;
+  if (!wire.vessel.empty()) table["vessel"] = wire.vessel;
   if (wire.geometry) table["geometry"] = component_json(*wire.geometry);
   if (wire.nodes > 0) table["nodes"] = wire.nodes;
+  if (wire.length != LengthRule::by_ends) table["length"] = wire.length == LengthRule::sliding ? "sliding" : "fixed";
   table["radius"] = radius_json(wire.radius);
   table["kinematics"] = component_json(wire.kinematics);
   table["ends"] = Json::array({end_json(wire.end[0]), end_json(wire.end[1])});

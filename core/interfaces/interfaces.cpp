@@ -1,5 +1,6 @@
 #include <stdexcept>
 
+#include "core/interfaces/place.hpp"
 #include "core/interfaces/component.hpp"
 #include "core/interfaces/parameter.hpp"
 
@@ -51,6 +52,26 @@ const ParameterValue& ParameterSet::at(const std::string& key) const {
   throw std::out_of_range("parameter '" + key +
                           "' has no value: the component's schema does not declare it, or "
                           "declares it optional and the composition leaves it out");
+}
+
+const char* site_name(Site site) noexcept {
+  switch (site) {
+    case Site::node:
+      return "node";
+    case Site::station:
+      return "station";
+    case Site::edge:
+      return "edge";
+    case Site::frame:
+      return "frame";
+    case Site::length:
+      return "length";
+    case Site::field:
+      return "field";
+    case Site::closure:
+      break;
+  }
+  return "closure row";
 }
 
 }  // namespace bowstring

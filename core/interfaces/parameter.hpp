@@ -22,11 +22,11 @@ struct ParameterDeclaration {
   /// "": optional without default (`Parameters::has` tells).
   const char* default_text;
   const char* description;
-  double lower = -1e308;                        ///< smallest admissible number, in `unit`
-  double upper = 1e308;                         ///< largest admissible number, in `unit`
-  bool lower_exclusive = false;                 ///< `lower` itself is not admissible
-  bool differentiable = false;                  ///< results are differentiable in this number
-  const char* choices = "";                     ///< of a `choice`: "first|second"
+  double lower = -1e308;         ///< smallest admissible number, in `unit`
+  double upper = 1e308;          ///< largest admissible number, in `unit`
+  bool lower_exclusive = false;  ///< `lower` itself is not admissible
+  bool differentiable = false;   ///< results are differentiable in this number
+  const char* choices = "";      ///< of a `choice`: "first|second"; of a scalar: names that may stand for a number
   const ParameterDeclaration* items = nullptr;  ///< of a `list` of tables: the declaration of one entry
   int item_count = 0;
 };
@@ -56,7 +56,7 @@ struct ParameterValue {
   double number = 0.0;              ///< scalar
   long integer = 0;                 ///< integer
   bool flag = false;                ///< flag
-  std::string text;                 ///< choice, text, or path (absolute)
+  std::string text;                 ///< choice, text, path (absolute), or the name that stands for a scalar
   std::vector<double> vector;       ///< vector
   Profile profile;                  ///< profile
   std::vector<ParameterSet> items;  ///< list

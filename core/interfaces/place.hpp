@@ -20,6 +20,8 @@ namespace bowstring {
 /// y only where they depend on unknowns (a sliding wire), otherwise they are constants of the site.
 enum class Site : int { node, station, edge, frame, length, field, closure };
 inline constexpr int site_count = 7;
+/// "node", "station", …, for messages.
+const char* site_name(Site site) noexcept;
 
 struct Place {
   int curve = 0;

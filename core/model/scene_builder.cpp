@@ -94,8 +94,8 @@ class Builder {
   bool sound(const std::string& flaw, const ComponentChoice& choice, const std::string& owner) {
     if (flaw.empty()) return true;
     if (plugin_failure_.ok()) {
-      plugin_failure_ = Status::failure(Code::failed, std::string(kind_name(choice.kind)) + " '" + choice.name +
-                                                          "' of " + owner + " " + flaw);
+      plugin_failure_ = Status::failure(
+          Code::failed, std::string(kind_name(choice.kind)) + " '" + choice.name + "' of " + owner + " " + flaw);
     }
     return false;
   }
@@ -106,10 +106,12 @@ class Builder {
   std::vector<double> end_tangent(const Curve& curve, const EndTable& table, int end,
                                   const std::vector<double>& from_geometry) const;
   void finish_view(Curve& curve);
+  bool read_geometry(Curve& curve, const ComponentChoice& choice, const EndTable* ends);
   void add_vessel(const VesselTable& table);
   void check_tube(const Curve& curve, const std::string& position);
   void add_wire(const WireTable& table);
   void start_wire(Curve& wire, const Curve& vessel, int nodes) const;
+  Extension wire_extension(const WireTable& table);
   void check_clearance(const Curve& wire, const Curve& vessel, const std::string& position);
   void declare_energies();
   void note_without_effect(const EnergyUse& use);
@@ -294,6 +296,26 @@ void Builder::check_tube(const Curve& curve, const std::string& position) {
         "smooth the centerline (geometry key 'smoothing') or sample it with fewer 'nodes'");
 }
 
+bool Builder::read_geometry(Curve& curve, const ComponentChoice& choice, const EndTable* ends) {
+  Status status;
+  const auto geometry = create<Geometry>(choice, status);
+  if (!passed(status, choice)) return false;
+  CurveGraph graph;
+  status = geometry->build(composition_.dimension, graph);
+  if (!passed(status, choice)) return false;
+  if (graph.curves.size() != 1) {
+    error(choice.position, "a geometry of " + std::to_string(graph.curves.size()) + " curves for '" + curve.name + "'",
+          "one curve", "");
+    return false;
+  }
+  if (!sound(flaw_of(graph.curves.front(), composition_.dimension), choice, "'" + curve.name + "'")) return false;
+  scene_->warnings.insert(scene_->warnings.end(), graph.warnings.begin(), graph.warnings.end());
+  set_geometry(curve, std::move(graph.curves.front()));
+  if (!check_points(curve, choice.position)) return false;
+  set_ends(curve, ends);
+  return true;
+}
+
 void Builder::add_vessel(const VesselTable& table) {
   auto curve = std::make_unique<Curve>();
   curve->name = table.name;
@@ -302,23 +324,7 @@ void Builder::add_vessel(const VesselTable& table) {
   curve->view.extension = Extension::stretching;
   curve->view.rigid = table.rigid;
 
-  Status status;
-  const auto geometry = create<Geometry>(table.geometry, status);
-  if (!passed(status, table.geometry)) return;
-  CurveGraph graph;
-  status = geometry->build(composition_.dimension, graph);
-  if (!passed(status, table.geometry)) return;
-  if (graph.curves.size() != 1) {
-    error(table.geometry.position,
-          "a geometry of " + std::to_string(graph.curves.size()) + " curves for vessel '" + table.name + "'",
-          "one curve", "");
-    return;
-  }
-  if (!sound(flaw_of(graph.curves.front(), composition_.dimension), table.geometry, "'" + table.name + "'")) return;
-  scene_->warnings.insert(scene_->warnings.end(), graph.warnings.begin(), graph.warnings.end());
-  set_geometry(*curve, std::move(graph.curves.front()));
-  if (!check_points(*curve, table.geometry.position)) return;
-  set_ends(*curve, table.end);
+  if (!read_geometry(*curve, table.geometry, table.end)) return;
   finish_view(*curve);
 
   Profile radius;
@@ -333,7 +339,7 @@ void Builder::add_vessel(const VesselTable& table) {
   }
   if (known) {
     std::vector<double> sampled;
-    status = sample_profile(radius, *curve, curve->arc, sampled);
+    const Status status = sample_profile(radius, *curve, curve->arc, sampled);
     const std::string& position = table.radius ? table.radius->position : table.geometry.position;
     if (!status.ok()) {
       error(position, status.text, "", "");
@@ -388,36 +394,51 @@ void Builder::check_clearance(const Curve& wire, const Curve& vessel, const std:
         "reduce the wire's radius, or use a constraint without clearance");
 }
 
+Extension Builder::wire_extension(const WireTable& table) {
+  const bool held = table.end[0].type != EndType::free && table.end[1].type != EndType::free;
+  if (table.length == LengthRule::by_ends) {
+    return held && !table.geometry ? Extension::sliding : Extension::fixed;
+  }
+  if (table.length == LengthRule::fixed) return Extension::fixed;
+  if (!held || table.vessel.empty()) {
+    error(table.length_position,
+          "wire '" + table.name + "' slides, but " + (held ? "lies in no vessel" : "has an end that is free along it"),
+          "both ends held, and a vessel: otherwise the wire withdraws and no minimum exists",
+          "write length = \"fixed\", or hold its ends");
+  }
+  return Extension::sliding;
+}
+
 void Builder::add_wire(const WireTable& table) {
   auto curve = std::make_unique<Curve>();
   curve->name = table.name;
   curve->kinematics_name = table.kinematics.name;
   curve->view.kind = CurveKind::wire;
   const Curve* vessel = find(table.vessel);
-  if (vessel == nullptr) {
-    error(table.position, "wire '" + table.name + "' without a vessel", "the name of a vessel that it starts along",
-          "");
-    return;
+  if (table.geometry) {
+    if (!read_geometry(*curve, *table.geometry, table.end)) return;
+  } else if (vessel != nullptr) {
+    start_wire(*curve, *vessel, table.nodes > 0 ? table.nodes : vessel->view.nodes);
+    for (int e = 0; e < 2; ++e) {
+      tangents_[e] = std::vector<double>(vessel->view.end[e].tangent, vessel->view.end[e].tangent + 3);
+    }
+    set_ends(*curve, table.end);
+  } else {
+    return;  // the composition has refused it
   }
-  start_wire(*curve, *vessel, table.nodes > 0 ? table.nodes : vessel->view.nodes);
-  for (int e = 0; e < 2; ++e) {
-    tangents_[e] = std::vector<double>(vessel->view.end[e].tangent, vessel->view.end[e].tangent + 3);
-  }
-  set_ends(*curve, table.end);
-  const bool held = table.end[0].type != EndType::free && table.end[1].type != EndType::free;
-  curve->view.extension = held ? Extension::sliding : Extension::fixed;
+  curve->view.extension = wire_extension(table);
   finish_view(*curve);
 
   std::vector<double> radius;
   const Status status = sample_profile(table.radius.profile, *curve, curve->arc, radius);
   if (!status.ok()) {
     error(table.radius.position, status.text, "", "");
-  } else if (held && table.radius.profile.form != Profile::Form::constant) {
+  } else if (curve->view.extension == Extension::sliding && table.radius.profile.form != Profile::Form::constant) {
     error(table.radius.position, "'radius' varies along '" + table.name + "', whose length slides",
           "one value along a sliding wire", "give a value, or let the wire end inside the vessel");
   } else {
     curve->radius = std::move(radius);
-    if (is_constrained({table.name, table.vessel})) {
+    if (curve->along >= 0 && is_constrained({table.name, table.vessel})) {
       check_clearance(*curve, *vessel, table.radius.position.empty() ? table.position : table.radius.position);
     }
   }
@@ -521,6 +542,13 @@ void Builder::sample_laws() {
     for (LawUse& law : use.laws) {
       if (!sample_law(use, law, choice)) continue;
       const Curve& curve = *scene_->curves[at(use.curve)];
+      if (law.description.site != Site::length && curve.site(law.description.site) == nullptr) {
+        error(choice.position,
+              "energy '" + use.label + "' reads " + site_name(law.description.site) + "s, which kinematics '" +
+                  curve.kinematics_name + "' of '" + curve.name + "' does not have",
+              "a kinematics that has them", "use kinematics = \"edge-frames\", or leave this energy out");
+        continue;
+      }
       const SiteDeclaration* station = curve.site(Site::station);
       if (law.description.site == Site::station && !law.description.isotropic && composition_.dimension == 3 &&
           station != nullptr && station->values - (station->lengths_vary ? 2 : 0) < 3) {

@@ -42,7 +42,10 @@ Json provenance(const Session& session, const Registry& registry) {
   const Composition& composition = session.composition;
   const auto add = [&](const ComponentChoice& choice) { named.emplace(static_cast<int>(choice.kind), choice.name); };
   for (const VesselTable& vessel : composition.vessels) add(vessel.geometry), add(vessel.kinematics);
-  for (const WireTable& wire : composition.wires) add(wire.kinematics);
+  for (const WireTable& wire : composition.wires) {
+    if (wire.geometry) add(*wire.geometry);
+    add(wire.kinematics);
+  }
   for (const EnergyTable& energy : composition.energies) add(energy.component);
   for (const ConstraintTable& constraint : composition.constraints) add(constraint.component);
   add(composition.enforcement);

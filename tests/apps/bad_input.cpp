@@ -104,8 +104,8 @@ TEST_CASE("an unknown plugin") {
   const std::string text = edited(planar(), "type = \"axial-tension\"", "type = \"axial-tensoin\"");
   CHECK(refusal(text) ==
         position("bad.toml", text, "\"axial-tensoin\"") +
-            ": unknown energy 'axial-tensoin'; expected one of: anchoring, axial-tension, extravascular, "
-            "vessel-strain, wire-bending; did you mean 'axial-tension'?\n");
+            ": unknown energy 'axial-tensoin'; expected one of: anchoring, axial-tension, dead-moment, "
+            "extravascular, point-load, vessel-strain, wire-bending; did you mean 'axial-tension'?\n");
 }
 
 TEST_CASE("two energies of one name") {

@@ -12,7 +12,8 @@
 //   [[order]]  runs = ["N = 20", "N = 40", …], steps = [19, 39, …], path = "energy.total", least = 1.9, most = 2.2,
 //              limit = 112.1, relative = 0.003
 //
-// Paths address the result document. Prints a table and ends with "N passed, N failed, N skipped".
+// Paths address the result document; entries of lists by number, negative from the end. Prints a table and ends with "N
+// passed, N failed, N skipped".
 
 #include <cmath>
 #include <cstdio>
@@ -53,8 +54,15 @@ const Json* lookup(const Json& document, const std::string& path) {
   while (begin <= path.size()) {
     const std::size_t end = std::min(path.find('.', begin), path.size());
     const std::string key = path.substr(begin, end - begin);
-    if (!at->is_object() || !at->contains(key)) return nullptr;
-    at = &(*at)[key];
+    if (at->is_array()) {
+      const long index = std::strtol(key.c_str(), nullptr, 10);
+      const auto size = static_cast<long>(at->size());
+      if (index >= size || index < -size) return nullptr;
+      at = &(*at)[static_cast<std::size_t>(index < 0 ? size + index : index)];
+    } else {
+      if (!at->is_object() || !at->contains(key)) return nullptr;
+      at = &(*at)[key];
+    }
     begin = end + 1;
   }
   return at;

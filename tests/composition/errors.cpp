@@ -110,8 +110,8 @@ TEST_CASE("keys that a table must have") {
               "geometry; add geometry = { type = \"<geometry>\", … }",
               "scene.toml:4:1: wire 'wire' has no 'radius'; expected a quantity in mm, more than 0, or a table with "
               "'table', 'segments' or 'column'; add radius = \"<number> mm\"",
-              "scene.toml:4:1: wire 'wire' has no 'vessel'; expected the vessel that the wire starts along; add vessel "
-              "= \"<name>\"",
+              "scene.toml:4:1: wire 'wire' has no 'vessel' and no 'geometry'; expected the vessel that the wire starts "
+              "along, or a geometry of its own; add vessel = \"<name>\", or geometry = { type = \"<geometry>\", … }",
               "scene.toml:5:1: energy 'anchoring' has no 'on'; expected the curve that it acts on; add on = "
               "\"<curve>\"",
               "scene.toml:5:1: energy 'anchoring' has no 'stiffness'; expected a quantity in N/mm^2 or N/mm, at least "
@@ -126,25 +126,35 @@ TEST_CASE("keys that a table must have") {
 
 TEST_CASE("what belongs to a later version is said to") {
   Workbench bench;
-  const std::string text =
-      scene_with("radius = \"0.4 mm\"\n",
-                 "radius = \"0.4 mm\"\nlength = \"sliding\"\nspan = [0, 1]\nspacing = [1]\n"
-                 "geometry = { type = \"csv\" }\nends = [{ type = \"free\", move = [1, 0] }, \"pinned\"]\n") +
-      "[start]\n[[step]]\n[[loss]]\n";
-  const std::string known = "expected one of: name, vessel, ends, kinematics, nodes, radius; remove it";
+  const std::string text = scene_with("radius = \"0.4 mm\"\n",
+                                      "radius = \"0.4 mm\"\nspan = [0, 1]\nspacing = [1]\n"
+                                      "ends = [{ type = \"free\", move = [1, 0] }, \"pinned\"]\n") +
+                           "[start]\n[[step]]\n[[loss]]\n";
+  const std::string known =
+      "expected one of: name, vessel, geometry, ends, kinematics, nodes, radius, length; remove it";
   const std::string tables =
       "expected one of: schema, title, base, plugin-path, set, scene, vessel, wire, energy, "
       "constraint, enforcement, solver, certificate; remove it";
   CHECK(bench.errors(text) ==
-        Texts{"scene.toml:12:1: key 'length' in wire 'w' is not available in this version; " + known,
-              "scene.toml:13:1: key 'span' in wire 'w' is not available in this version; " + known,
-              "scene.toml:14:1: key 'spacing' in wire 'w' is not available in this version; " + known,
-              "scene.toml:15:1: key 'geometry' in wire 'w' is not available in this version; " + known,
-              "scene.toml:16:26: key 'move' in the first end of wire 'w' is not available in this version; expected "
+        Texts{"scene.toml:12:1: key 'span' in wire 'w' is not available in this version; " + known,
+              "scene.toml:13:1: key 'spacing' in wire 'w' is not available in this version; " + known,
+              "scene.toml:14:26: key 'move' in the first end of wire 'w' is not available in this version; expected "
               "one of: type, tangent; remove it",
-              "scene.toml:33:2: key 'start' in the composition is not available in this version; " + tables,
-              "scene.toml:34:3: key 'step' in the composition is not available in this version; " + tables,
-              "scene.toml:35:3: key 'loss' in the composition is not available in this version; " + tables});
+              "scene.toml:31:2: key 'start' in the composition is not available in this version; " + tables,
+              "scene.toml:32:3: key 'step' in the composition is not available in this version; " + tables,
+              "scene.toml:33:3: key 'loss' in the composition is not available in this version; " + tables});
+}
+
+TEST_CASE("a wire with a geometry of its own takes that geometry's nodes, and needs no vessel") {
+  Workbench bench;
+  const std::string rod = "geometry = { type = \"csv\", file = \"a.csv\" }\n";
+  CHECK(bench.loaded(scene_with("vessel = \"v\"\n", rod), {}).wires[0].geometry->name == "csv");
+  CHECK(bench.errors(scene_with("vessel = \"v\"\n", rod + "nodes = 20\n")) ==
+        Texts{"scene.toml:11:9: 'nodes' of wire 'w' beside a geometry of its own; expected the nodes of that geometry; "
+              "write them as 'nodes' of the geometry"});
+  CHECK(bench.errors(test::small_scene, {{"wire.w.length", "slidin"}}) ==
+        Texts{"--set wire.w.length=slidin: 'length' of wire 'w' is text \"slidin\"; expected 'sliding' or 'fixed'; did "
+              "you mean 'sliding'?"});
 }
 
 TEST_CASE("a second-order verdict cannot be demanded yet") {
