@@ -35,6 +35,7 @@ const char* end_type_name(EndType type) noexcept;
 struct EndTable {
   EndType type = EndType::pinned;
   std::vector<double> tangent;  ///< dimension numbers, not yet normalised, or empty
+  std::vector<double> move;     ///< dimension numbers: prescribed displacement from State 1, mm, or empty
   std::string position;
 };
 

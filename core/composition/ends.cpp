@@ -26,7 +26,7 @@ class EndReader {
   void read(const Node& node) {
     out_.position = node.position.text();
     if (!node.is_table()) return read_type(node);
-    check_keys(node, subject_, {"type", "tangent"}, {"position", "rotation", "axes", "move", "turn"}, "remove it",
+    check_keys(node, subject_, {"type", "tangent", "move"}, {"position", "rotation", "axes", "turn"}, "remove it",
                reading_.report);
     if (const Entry* type = node.find("type")) {
       read_type(type->value);
@@ -34,6 +34,7 @@ class EndReader {
       fail(node, subject_ + " has no 'type'", quoted_alternatives(end_type_names()), "add type = \"<end>\"");
     }
     if (const Entry* tangent = node.find("tangent")) read_tangent(tangent->value);
+    if (const Entry* move = node.find("move")) read_move(move->value);
   }
 
  private:
@@ -53,24 +54,40 @@ class EndReader {
          near.empty() ? "write one of them in quotes" : did_you_mean(near));
   }
 
-  void read_tangent(const Node& node) {
-    const std::string subject = "'tangent' of " + subject_;
+  /// As many numbers as the scene has dimensions; false where something has been reported.
+  bool read_numbers(const Node& node, const std::string& subject, const NumberRules& rules, const std::string& mend,
+                    std::vector<double>& out) {
     const int dimension = reading_.dimension;
     const bool right_size = node.is_list() && (dimension == 0 || static_cast<int>(node.items.size()) == dimension);
     if (!right_size) {
       const std::string found =
           node.is_list() ? "has " + std::to_string(node.items.size()) + " entries" : "is " + description(node);
-      fail(node, subject + " " + found, "a list of as many numbers as the scene has dimensions",
-           "write the direction that is held, along the curve");
-      return;
+      fail(node, subject + " " + found, "a list of as many numbers as the scene has dimensions", mend);
+      return false;
     }
-    double square = 0.0;
     for (const Node& item : node.items) {
-      const std::optional<Number> number = read_number(item, "an entry of " + subject, {}, reading_.report);
-      if (!number) return;
-      out_.tangent.push_back(number->value);
-      square += number->value * number->value;
+      const std::optional<Number> number = read_number(item, "an entry of " + subject, rules, reading_.report);
+      if (!number) return false;
+      out.push_back(number->value);
     }
+    return true;
+  }
+
+  void read_move(const Node& node) {
+    NumberRules millimetres;
+    millimetres.units = {"mm"};
+    const std::string subject = "'move' of " + subject_;
+    if (!read_numbers(node, subject, millimetres, "write the displacement from State 1 in global axes", out_.move))
+      return;
+    if (out_.type != EndType::free) return;
+    fail(node, subject + ", which is free", "an end whose position is held", "hold it, as in type = \"pinned\"");
+  }
+
+  void read_tangent(const Node& node) {
+    const std::string subject = "'tangent' of " + subject_;
+    if (!read_numbers(node, subject, {}, "write the direction that is held, along the curve", out_.tangent)) return;
+    double square = 0.0;
+    for (const double number : out_.tangent) square += number * number;
     if (square > 0.0 && std::isfinite(square)) return;
     fail(node, subject + (square > 0.0 ? " is too long" : " has no length"), "a direction",
          "write the direction that is held, along the curve");

@@ -110,8 +110,11 @@ Json component_json(const ComponentChoice& choice) {
 }
 
 Json end_json(const EndTable& end) {
-  if (end.tangent.empty()) return end_type_name(end.type);
-  return {{"type", end_type_name(end.type)}, {"tangent", end.tangent}};
+  if (end.tangent.empty() && end.move.empty()) return end_type_name(end.type);
+  Json table{{"type", end_type_name(end.type)}};
+  if (!end.tangent.empty()) table["tangent"] = end.tangent;
+  if (!end.move.empty()) table["move"] = end.move;
+  return table;
 }
 
 /// Structural profiles are in mm and have no alternatives.

@@ -105,7 +105,8 @@ class Builder {
   void set_ends(Curve& curve, const EndTable* ends);
   std::vector<double> end_tangent(const Curve& curve, const EndTable& table, int end,
                                   const std::vector<double>& from_geometry) const;
-  void finish_view(Curve& curve);
+  void spread_moves(Curve& curve, const EndTable* ends) const;
+  void finish_view(Curve& curve, const EndTable* ends);
   bool read_geometry(Curve& curve, const ComponentChoice& choice, const EndTable* ends);
   void add_vessel(const VesselTable& table);
   void check_tube(const Curve& curve, const std::string& position);
@@ -243,10 +244,27 @@ void Builder::set_ends(Curve& curve, const EndTable* ends) {
   }
 }
 
-void Builder::finish_view(Curve& curve) {
+/// The start takes the ends where they are moved to, and what lies between in proportion to its arc length.
+void Builder::spread_moves(Curve& curve, const EndTable* ends) const {
+  const int d = composition_.dimension;
+  const int last = curve.view.nodes - 1;
+  for (int e = 0; e < 2; ++e) {
+    if (ends[e].move.empty()) continue;
+    for (int i = 0; i <= last; ++i) {
+      const int from_end = e == 0 ? i : last - i;
+      const double share = curve.arc[at(i)] / curve.arc.back();
+      const bool whole = from_end == 0 || (from_end == 1 && curve.view.end[e].edge_held);
+      const double part = whole ? 1.0 : (e == 0 ? 1.0 - share : share);
+      for (int k = 0; k < d; ++k) curve.start[at(i * d + k)] += part * ends[e].move[at(k)];
+    }
+  }
+}
+
+void Builder::finish_view(Curve& curve, const EndTable* ends) {
   const int d = composition_.dimension;
   const int edges = curve.view.nodes - 1;
-  curve.arc = polyline_arc(curve.start, d);
+  curve.arc = polyline_arc(curve.reference, d);
+  spread_moves(curve, ends);
   curve.edge_length.clear();
   for (int i = 0; i < edges; ++i) curve.edge_length.push_back(curve.arc[at(i + 1)] - curve.arc[at(i)]);
 
@@ -325,7 +343,7 @@ void Builder::add_vessel(const VesselTable& table) {
   curve->view.rigid = table.rigid;
 
   if (!read_geometry(*curve, table.geometry, table.end)) return;
-  finish_view(*curve);
+  finish_view(*curve, table.end);
 
   Profile radius;
   bool known = table.radius.has_value();
@@ -427,7 +445,7 @@ void Builder::add_wire(const WireTable& table) {
     return;  // the composition has refused it
   }
   curve->view.extension = wire_extension(table);
-  finish_view(*curve);
+  finish_view(*curve, table.end);
 
   std::vector<double> radius;
   const Status status = sample_profile(table.radius.profile, *curve, curve->arc, radius);

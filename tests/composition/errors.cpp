@@ -128,7 +128,7 @@ TEST_CASE("what belongs to a later version is said to") {
   Workbench bench;
   const std::string text = scene_with("radius = \"0.4 mm\"\n",
                                       "radius = \"0.4 mm\"\nspan = [0, 1]\nspacing = [1]\n"
-                                      "ends = [{ type = \"free\", move = [1, 0] }, \"pinned\"]\n") +
+                                      "ends = [{ type = \"free\", turn = 1 }, \"pinned\"]\n") +
                            "[start]\n[[step]]\n[[loss]]\n";
   const std::string known =
       "expected one of: name, vessel, geometry, ends, kinematics, nodes, radius, length; remove it";
@@ -138,8 +138,8 @@ TEST_CASE("what belongs to a later version is said to") {
   CHECK(bench.errors(text) ==
         Texts{"scene.toml:12:1: key 'span' in wire 'w' is not available in this version; " + known,
               "scene.toml:13:1: key 'spacing' in wire 'w' is not available in this version; " + known,
-              "scene.toml:14:26: key 'move' in the first end of wire 'w' is not available in this version; expected "
-              "one of: type, tangent; remove it",
+              "scene.toml:14:26: key 'turn' in the first end of wire 'w' is not available in this version; expected "
+              "one of: type, tangent, move; remove it",
               "scene.toml:31:2: key 'start' in the composition is not available in this version; " + tables,
               "scene.toml:32:3: key 'step' in the composition is not available in this version; " + tables,
               "scene.toml:33:3: key 'loss' in the composition is not available in this version; " + tables});
@@ -155,6 +155,28 @@ TEST_CASE("a wire with a geometry of its own takes that geometry's nodes, and ne
   CHECK(bench.errors(test::small_scene, {{"wire.w.length", "slidin"}}) ==
         Texts{"--set wire.w.length=slidin: 'length' of wire 'w' is text \"slidin\"; expected 'sliding' or 'fixed'; did "
               "you mean 'sliding'?"});
+}
+
+TEST_CASE("a move is a displacement of an end that is held") {
+  Workbench bench;
+  const auto error = [&](const std::string& end) {
+    const Texts all = bench.errors(test::small_scene, {{"wire.w.ends", "[" + end + ", \"pinned\"]"}});
+    REQUIRE(all.size() == 1);
+    return all[0].substr(all[0].find("]: ") + 3);
+  };
+  CHECK(error("{ type = \"free\", move = [1, 0] }") ==
+        "'move' of the first end of wire 'w', which is free; expected an end whose position is held; hold it, as in "
+        "type = "
+        "\"pinned\"");
+  CHECK(error("{ type = \"pinned\", move = [1, 0, 0] }") ==
+        "'move' of the first end of wire 'w' has 3 entries; expected a list of as many numbers as the scene has "
+        "dimensions; write the displacement from State 1 in global axes");
+  CHECK(error("{ type = \"pinned\", move = [\"1 N\", 0] }") ==
+        "wrong unit: an entry of 'move' of the first end of wire 'w' is text \"1 N\"; expected a quantity in mm; write "
+        "\"1 mm\"");
+  const Composition scene =
+      bench.loaded(test::small_scene, {{"wire.w.ends", "[{ type = \"pinned\", move = [\"1 cm\", 0] }, \"pinned\"]"}});
+  CHECK(scene.wires[0].end[0].move == std::vector<double>{10.0, 0.0});
 }
 
 TEST_CASE("a second-order verdict cannot be demanded yet") {
