@@ -4,6 +4,7 @@
 #include <limits>
 #include <mutex>
 
+#include <IpCompoundVector.hpp>
 #include <IpIpoptApplication.hpp>
 #include <IpIpoptCalculatedQuantities.hpp>
 #include <IpIpoptData.hpp>
@@ -200,10 +201,12 @@ class ChartProgram final : public Ipopt::TNLP {
       if (context_.on_iteration && !context_.on_iteration(result_.history.back())) stop = Stop::user;
     }
     first_callback_ = false;
-    if (mode == Ipopt::RegularMode && read_iterate(*data, *quantities)) {
+    if (read_iterate(*data, *quantities)) {
       chart_.state(x, q_);
       note(problem_.accept(q_));
-      if (problem_.epoch_due() || chart_.recentre_due(x)) stop = Stop::epoch;
+      // A restoration ends with an iterate of the problem itself; until then there is none to restart from.
+      const bool restartable = mode == Ipopt::RegularMode;
+      if (restartable && (problem_.epoch_due() || chart_.recentre_due(x))) stop = Stop::epoch;
     }
     if (result_.iterations >= settings_.max_iterations) stop = Stop::iterations;
     if (std::chrono::duration<double>(Clock::now() - begin_).count() > settings_.time_limit) stop = Stop::time;
@@ -234,13 +237,19 @@ class ChartProgram final : public Ipopt::TNLP {
     return status.ok();
   }
 
-  /// The iterate as the user's problem numbers it; false inside Ipopt's restoration problem.
+  /// The iterate as the user's problem numbers it. Inside Ipopt's restoration problem it is the first part of that
+  /// problem's variables, in the order of the problem around it.
   bool read_iterate(const Ipopt::IpoptData& data, Ipopt::IpoptCalculatedQuantities& quantities) {
-    auto* nlp = dynamic_cast<Ipopt::OrigIpoptNLP*>(Ipopt::GetRawPtr(quantities.GetIpoptNLP()));
-    if (nlp == nullptr) return false;
-    auto* adapter = dynamic_cast<Ipopt::TNLPAdapter*>(Ipopt::GetRawPtr(nlp->nlp()));
-    if (adapter == nullptr) return false;
-    adapter->ResortX(*data.curr()->x(), x.data());
+    const Ipopt::Vector* iterate = Ipopt::GetRawPtr(data.curr()->x());
+    if (auto* nlp = dynamic_cast<Ipopt::OrigIpoptNLP*>(Ipopt::GetRawPtr(quantities.GetIpoptNLP()))) {
+      adapter_ = dynamic_cast<Ipopt::TNLPAdapter*>(Ipopt::GetRawPtr(nlp->nlp()));
+    } else if (const auto* parts = dynamic_cast<const Ipopt::CompoundVector*>(iterate)) {
+      iterate = Ipopt::GetRawPtr(parts->GetComp(0));
+    } else {
+      return false;
+    }
+    if (adapter_ == nullptr) return false;
+    adapter_->ResortX(*iterate, x.data());
     return true;
   }
 
@@ -251,6 +260,7 @@ class ChartProgram final : public Ipopt::TNLP {
   SolverResult& result_;
   Clock::time_point begin_;
   bool first_callback_ = true;
+  Ipopt::TNLPAdapter* adapter_ = nullptr;  // Ipopt's own, alive as long as its run
 
  public:
   std::vector<double> x;

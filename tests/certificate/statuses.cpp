@@ -409,17 +409,14 @@ TEST_CASE("infeasible: a wire that has to lie in two rigid vessels at once") {
   const auto certificate_with = [&](const std::string& guard) {
     return solved(session_of_text(text + "step-guard = " + guard + "\n")).solution.certificate;
   };
-  const Certificate found = certificate_with("0.0");
-  INFO(found.reason);
-  CHECK(found.penetration > 1.0);
-  CHECK(found.verdict == Verdict::infeasible);
-  CHECK(contains(found.reason, "Ipopt converged to a point of local infeasibility; "));
-  CHECK(contains(found.reason, "row penetration "));
-  // A guarded solver may run out of iterations first, but nothing better is said of its point.
-  const Certificate guarded = certificate_with("0.5");
-  CHECK(guarded.penetration > 1.0);
-  const bool told = guarded.verdict == Verdict::infeasible || guarded.verdict == Verdict::stalled;
-  CHECK(told);
+  for (const char* guard : {"0.0", "0.5"}) {
+    const Certificate found = certificate_with(guard);
+    INFO(found.reason);
+    CHECK(found.penetration > 1.0);
+    CHECK(found.verdict == Verdict::infeasible);
+    CHECK(contains(found.reason, "Ipopt converged to a point of local infeasibility; "));
+    CHECK(contains(found.reason, "row penetration "));
+  }
 }
 
 TEST_CASE("a solver's word is no proof, and its failure is a verdict with its name") {
