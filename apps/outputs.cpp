@@ -119,6 +119,9 @@ int Outputs::write(const std::string& document) const {
     }
     const auto writer = create<Writer>(target.writer, status);
     if (status.ok()) status = writer->write(document.c_str(), temporary.c_str());
+    if (std::error_code ignored; status.ok() && !fs::exists(temporary, ignored)) {
+      status = Status::failure(Code::failed, "writer '" + target.writer.name + "' wrote no file");
+    }
     if (!status.ok()) fail(target, status, exit_plugin_failed);
   }
   for (const Target& target : targets_) {

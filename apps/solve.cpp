@@ -1,4 +1,5 @@
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <optional>
@@ -37,7 +38,7 @@ class Progress {
 };
 
 void line(const char* label, const std::optional<double>& value, const char* unit) {
-  if (value) std::printf("  %-26s %12s %s\n", label, number(*value, 6).c_str(), unit);
+  if (value && std::isfinite(*value)) std::printf("  %-26s %12s %s\n", label, number(*value, 6).c_str(), unit);
 }
 
 void print_table(const Session& session, const Solution& solution, const Readings& readings) {
@@ -55,7 +56,7 @@ void print_table(const Session& session, const Solution& solution, const Reading
     line(session.scene->energies[e].label.c_str(), readings.term_energy[e], "N mm");
     total += readings.term_energy[e];
   }
-  line("total", total, "N mm");
+  if (!readings.term_energy.empty()) line("total", total, "N mm");
   const Quantities& q = readings.quantities;
   std::printf("quantities\n");
   line("peak displacement", q.peak_displacement, "mm");
@@ -72,6 +73,7 @@ void print_table(const Session& session, const Solution& solution, const Reading
   line("row penetration", certificate.penetration, "mm");
   line("penetration along the wire", certificate.dense_penetration(), "mm");
   line("complementarity", certificate.complementarity, "N mm");
+  if (!std::isfinite(certificate.minimum_stretch)) return;
   std::printf("  %-26s %12s … %s\n", "vessel stretch ratio", number(certificate.minimum_stretch, 4).c_str(),
               number(certificate.maximum_stretch, 4).c_str());
 }

@@ -230,7 +230,8 @@ std::string result_document(const Session& session, const Solution& solution, co
     energy[scene.energies[e].label] = finite(readings.term_energy[e]);
     total += readings.term_energy[e];
   }
-  energy["total"] = finite(total);
+  const bool known = readings.term_energy.size() == scene.energies.size();
+  energy["total"] = known ? finite(total) : Json(nullptr);
   Json curves = Json::array();
   for (const CurveRecord& record : readings.curves) curves.push_back(curve(*scene.curves[at(record.curve)], record));
 

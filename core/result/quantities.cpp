@@ -264,8 +264,10 @@ void read_wires(Session& session, const Solution& solution, const Readings& read
 
 Status read_solution(Session& session, const Solution& solution, Readings& out) {
   out = {};
-  if (Status status = session.assembly->term_energies(solution.q, out.term_energy); !status.ok()) return status;
+  const Status energies = session.assembly->term_energies(solution.q, out.term_energy);
+  // Where a plugin has failed the shapes are known all the same.
   for (const auto& curve : session.scene->curves) out.curves.push_back(read_curve(session, solution, *curve));
+  if (!energies.ok()) return energies;
   if (Status status = read_contacts(session, solution, out); !status.ok()) return status;
   if (Status status = read_supports(session, solution, out); !status.ok()) return status;
   read_displacements(*session.scene, out, out.quantities);

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <limits>
 
 #include "core/certificate/multipliers.hpp"
 #include "core/model/declarations.hpp"
@@ -24,8 +25,18 @@ void refuse(const Status& status, const ComponentChoice& choice, Refusal& refusa
   }
 }
 
+/// Of a point that could not be evaluated: no figure stands for what nobody knows.
+Certificate unknown_certificate() {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  Certificate out;
+  out.stationarity = out.rounding_floor = out.penetration = out.complementarity = out.minimum_multiplier = unknown;
+  out.minimum_stretch = out.maximum_stretch = unknown;
+  out.verdict = Verdict::failed;
+  return out;
+}
+
 Status admits(const SolverTraits& traits, const ProblemSummary& problem) {
-  const char* refused = !traits.equalities && problem.equalities > 0        ? "it takes no equality rows"
+  const char* refused = !traits.equalities && problem.equalities > 0       ? "it takes no equality rows"
                         : !traits.inequalities && problem.inequalities > 0 ? "it takes no inequality rows"
                         : !traits.bounds && problem.bounded_unknowns       ? "it takes no bounds on unknowns"
                                                                            : nullptr;
@@ -123,7 +134,7 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
                      solution.solver.reason, solution.certificate);
   }
   if (!status.ok()) {
-    solution.certificate.verdict = Verdict::failed;
+    solution.certificate = unknown_certificate();
     solution.certificate.reason = solution.solver.claim == Claim::failed ? solution.solver.reason : status.text;
   }
   const ParameterValue* tolerance = session.composition.solver.parameters.find("tolerance");

@@ -100,6 +100,9 @@ TEST_CASE("a plugin that answers NaN: failed, and named") {
   CHECK(document["status"] == "failed");
   const std::string reason = document["reason"];
   CHECK_MESSAGE(contains(reason, "test-not-a-number"), reason);
+  CHECK(document["certificate"]["stationarity"].is_null());
+  CHECK(document["energy"]["total"].is_null());
+  CHECK(document["curves"][0]["points"].size() == 80);
   CHECK_MESSAGE(contains(reason, "iliac"), reason);
 }
 
