@@ -57,20 +57,10 @@ void explain_curve(const Curve& curve) {
 
 void explain_plugins(const Session& session, const Registry& registry) {
   std::set<std::string> lines;
-  const auto add = [&](const ComponentChoice& choice) {
-    lines.insert(std::string(kind_name(choice.kind)) + "/" + choice.name + "  " +
-                 registry.origin(choice.kind, choice.name).file);
-  };
-  const Composition& composition = session.composition;
-  for (const VesselTable& vessel : composition.vessels) add(vessel.geometry), add(vessel.kinematics);
-  for (const WireTable& wire : composition.wires) {
-    if (wire.geometry) add(*wire.geometry);
-    add(wire.kinematics);
+  for (const ComponentChoice* choice : components_of(session.composition)) {
+    lines.insert(std::string(kind_name(choice->kind)) + "/" + choice->name + "  " +
+                 registry.origin(choice->kind, choice->name).file);
   }
-  for (const EnergyTable& energy : composition.energies) add(energy.component);
-  for (const ConstraintTable& constraint : composition.constraints) add(constraint.component);
-  add(composition.enforcement);
-  add(composition.solver);
   std::printf("plugins opened, and no others\n");
   for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
 }

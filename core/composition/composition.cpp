@@ -59,6 +59,7 @@ Composition read_composition(const Node& root, Reading& reading) {
   return composition;
 }
 
+/// Files that parameters name.
 void add_paths(const ParameterSet& parameters, std::vector<std::string>& out) {
   for (const ParameterValue& value : parameters.values) {
     if (value.type == ParameterType::path && !value.text.empty()) out.push_back(value.text);
@@ -66,25 +67,24 @@ void add_paths(const ParameterSet& parameters, std::vector<std::string>& out) {
   }
 }
 
-/// Files that parameters of any plugin name.
-std::vector<std::string> data_files(const Composition& composition) {
-  std::vector<std::string> out;
+}  // namespace
+
+std::vector<const ComponentChoice*> components_of(const Composition& composition) {
+  std::vector<const ComponentChoice*> out;
   for (const VesselTable& vessel : composition.vessels) {
-    add_paths(vessel.geometry.parameters, out);
-    add_paths(vessel.kinematics.parameters, out);
+    out.push_back(&vessel.geometry);
+    out.push_back(&vessel.kinematics);
   }
   for (const WireTable& wire : composition.wires) {
-    if (wire.geometry) add_paths(wire.geometry->parameters, out);
-    add_paths(wire.kinematics.parameters, out);
+    if (wire.geometry) out.push_back(&*wire.geometry);
+    out.push_back(&wire.kinematics);
   }
-  for (const EnergyTable& energy : composition.energies) add_paths(energy.component.parameters, out);
-  for (const ConstraintTable& constraint : composition.constraints) add_paths(constraint.component.parameters, out);
-  add_paths(composition.enforcement.parameters, out);
-  add_paths(composition.solver.parameters, out);
+  for (const EnergyTable& energy : composition.energies) out.push_back(&energy.component);
+  for (const ConstraintTable& constraint : composition.constraints) out.push_back(&constraint.component);
+  out.push_back(&composition.enforcement);
+  out.push_back(&composition.solver);
   return out;
 }
-
-}  // namespace
 
 CompositionOutcome load_composition(const CompositionRequest& request, Registry& registry) {
   CompositionOutcome outcome;
@@ -95,7 +95,9 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
     Composition composition = read_composition(sources->root, reading);
     composition.file = request.file;
     composition.input_files = sources->files;
-    for (std::string& file : data_files(composition)) composition.input_files.push_back(std::move(file));
+    for (const ComponentChoice* choice : components_of(composition)) {
+      add_paths(choice->parameters, composition.input_files);
+    }
     if (report.empty() && outcome.plugin_failure.ok()) {
       composition.resolved_json = resolved_json(composition, sources->plugin_path);
       composition.without_effect = without_effect(sources->root, composition);

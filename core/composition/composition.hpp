@@ -106,6 +106,9 @@ struct Composition {
   std::vector<std::string> without_effect;  ///< declared, allowed, and idle in this scene: for `explain`
 };
 
+/// Every plugin that a composition names, in the order of its tables; one as often as it is named.
+std::vector<const ComponentChoice*> components_of(const Composition& composition);
+
 /// `path=value` from the command line, applied after the file's own overrides.
 struct Override {
   std::string path;   ///< "energy.axial-tension.tension"

@@ -15,9 +15,9 @@ std::string list_of(const std::vector<std::string>& names) {
   return text.empty() ? "none" : text;
 }
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& names) {
+std::string hint(const std::string& word, const std::vector<std::string>& names) {
   const auto nearest = nearest_names(word, names);
-  return nearest.empty() ? "" : "; did you mean '" + nearest.front() + "'?";
+  return nearest.empty() ? "" : "; " + did_you_mean({nearest.front()});
 }
 
 /// Arc coordinate along the profile's own axis.
@@ -43,7 +43,7 @@ Status sample_segments(const Profile& profile, const Curve& curve, const std::ve
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
     return Status::failure(Code::invalid_input,
                            "a value for segment '" + segment + "', which the geometry of '" + curve.name +
-                               "' does not label; expected one of: " + list_of(labels) + did_you_mean(segment, labels));
+                               "' does not label; expected one of: " + list_of(labels) + hint(segment, labels));
   }
   for (const double s : arc) {
     const std::string& label = curve.label[nearest_index(curve.arc, s)];
@@ -64,7 +64,7 @@ Status sample_column(const Profile& profile, const Curve& curve, const std::vect
   }
   const std::string text = "a profile from column '" + profile.column + "', which the geometry of '" + curve.name +
                            "' does not have; expected one of: " + list_of(names);
-  return Status::failure(Code::invalid_input, text + did_you_mean(profile.column, names));
+  return Status::failure(Code::invalid_input, text + hint(profile.column, names));
 }
 
 }  // namespace

@@ -39,17 +39,9 @@ Json rows(const std::vector<double>& values, int per_row) {
 
 Json provenance(const Session& session, const Registry& registry) {
   std::set<std::pair<int, std::string>> named;
-  const Composition& composition = session.composition;
-  const auto add = [&](const ComponentChoice& choice) { named.emplace(static_cast<int>(choice.kind), choice.name); };
-  for (const VesselTable& vessel : composition.vessels) add(vessel.geometry), add(vessel.kinematics);
-  for (const WireTable& wire : composition.wires) {
-    if (wire.geometry) add(*wire.geometry);
-    add(wire.kinematics);
+  for (const ComponentChoice* choice : components_of(session.composition)) {
+    named.emplace(static_cast<int>(choice->kind), choice->name);
   }
-  for (const EnergyTable& energy : composition.energies) add(energy.component);
-  for (const ConstraintTable& constraint : composition.constraints) add(constraint.component);
-  add(composition.enforcement);
-  add(composition.solver);
   Json plugins = Json::array();
   for (const auto& [kind, name] : named) {
     const ComponentOrigin origin = registry.origin(static_cast<Kind>(kind), name);

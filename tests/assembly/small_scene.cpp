@@ -82,6 +82,15 @@ std::unique_ptr<Session> session_of_text(const std::string& text) {
   return prepared(request);
 }
 
+std::string refusal_of(const std::string& text) {
+  const TemporaryFile file(text);
+  CompositionRequest request;
+  request.file = file.path();
+  Refusal refusal;
+  REQUIRE(prepare(request, plugin_host(), refusal) == nullptr);
+  return refusal_text(refusal);
+}
+
 std::unique_ptr<Session> session_of_file(const std::string& name, const std::vector<Override>& overrides) {
   CompositionRequest request;
   request.file = variable("BOWSTRING_SOURCE_ROOT") + "/scenes/" + name;

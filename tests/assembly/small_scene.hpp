@@ -35,6 +35,8 @@ std::string refusal_text(const Refusal& refusal);
 /// Prepares a composition that has to be right, with a window that no row leaves.
 std::unique_ptr<Session> session_of(const SmallScene& scene);
 std::unique_ptr<Session> session_of_text(const std::string& text);
+/// What is said of a composition that has to be wrong.
+std::string refusal_of(const std::string& text);
 /// The same for a file of the project's `scenes` folder.
 std::unique_ptr<Session> session_of_file(const std::string& name, const std::vector<Override>& overrides = {});
 

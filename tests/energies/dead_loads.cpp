@@ -4,7 +4,6 @@
 
 #include "core/result/quantities.hpp"
 #include "tests/assembly/small_scene.hpp"
-#include "tests/curve/temporary_file.hpp"
 
 namespace bowstring::testing {
 
@@ -16,15 +15,6 @@ std::string rod(const std::string& load, const std::string& more = "", const std
          "\"\ngeometry = { type = \"line\", length = 100, nodes = 41 }\nends = [\"clamped\", \"free\"]\n" + more +
          "[[energy]]\ntype = \"wire-bending\"\non = \"rod\"\nbending-stiffness = 1000\n[[energy]]\non = \"rod\"\n" +
          load + "[solver]\ntype = \"ipopt\"\n";
-}
-
-std::string refusal_of(const std::string& text) {
-  const TemporaryFile file(text);
-  CompositionRequest request;
-  request.file = file.path();
-  Refusal refusal;
-  CHECK(prepare(request, plugin_host(), refusal) == nullptr);
-  return refusal_text(refusal);
 }
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

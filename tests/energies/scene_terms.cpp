@@ -2,7 +2,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/curve/temporary_file.hpp"
 #include "tests/energies/terms.hpp"
 
 namespace bowstring::testing {
@@ -49,15 +48,6 @@ bool mentions(const std::vector<std::string>& texts, const std::string& first, c
   return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) {
     return text.find(first) != std::string::npos && text.find(second) != std::string::npos;
   });
-}
-
-std::string refusal_of(const std::string& text) {
-  const TemporaryFile file(text);
-  CompositionRequest request;
-  request.file = file.path();
-  Refusal refusal;
-  REQUIRE(prepare(request, plugin_host(), refusal) == nullptr);
-  return refusal_text(refusal);
 }
 
 }  // namespace

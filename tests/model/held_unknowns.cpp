@@ -8,20 +8,10 @@
 #include "core/model/manifold.hpp"
 #include "tests/assembly/differences.hpp"
 #include "tests/assembly/small_scene.hpp"
-#include "tests/curve/temporary_file.hpp"
 
 namespace bowstring::testing {
 
 namespace {
-
-std::string refusal_of(const std::string& text) {
-  const TemporaryFile file(text);
-  CompositionRequest request;
-  request.file = file.path();
-  Refusal refusal;
-  REQUIRE(prepare(request, plugin_host(), refusal) == nullptr);
-  return refusal_text(refusal);
-}
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 

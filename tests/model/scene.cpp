@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "tests/assembly/small_scene.hpp"
-#include "tests/curve/temporary_file.hpp"
 
 namespace bowstring::testing {
 
@@ -13,15 +12,6 @@ std::string edited(std::string text, const std::string& word, const std::string&
   const std::size_t position = text.find(word);
   REQUIRE(position != std::string::npos);
   return text.replace(position, word.size(), by);
-}
-
-std::string refusal_of(const std::string& text) {
-  const TemporaryFile file(text);
-  CompositionRequest request;
-  request.file = file.path();
-  Refusal refusal;
-  CHECK(prepare(request, plugin_host(), refusal) == nullptr);
-  return refusal_text(refusal);
 }
 
 SmallScene with_ends(int dimension, const std::string& first, const std::string& last) {
