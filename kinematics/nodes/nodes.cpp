@@ -18,88 +18,181 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// What a station reads of an edge or of a held tangent.
-template <int d>
+/// What a station reads of an edge or of a held tangent. An edge has `edge_numbers` unknowns of its own: its vector e,
+/// as the difference of its nodes, and with material frames its angle.
+template <Manifold manifold>
 struct Side {
+  static constexpr int d = Orientation<manifold>::dimension, m = Orientation<manifold>::components;
+  static constexpr int angles = manifold == Manifold::rotation ? 1 : 0;
+  static constexpr int edge_numbers = d + angles;
+
   Vector<d> tangent;
-  lie::Rotation frame;    ///< in space: first axis along the tangent
-  double length = 0.0;    ///< of an edge; 0 for a held tangent
-  Matrix<d - 1, d> turn;  ///< ∂α/∂e of an edge: α the tangent numbers of its direction, e its vector
+  lie::Rotation frame;           ///< in space: first axis along the tangent
+  double length = 0.0;           ///< of an edge; 0 for a held tangent
+  Matrix<m, edge_numbers> turn;  ///< ∂α/∂(e, φ): α the tangent numbers of the edge's orientation
+  Vector<d> twist_rate;          ///< with material frames ∇D/D, D = ℓ² (1 + t·a) (README.md)
 
   bool is_edge() const noexcept { return length > 0.0; }
 };
+using PlanarSide = Side<Manifold::circle>;
+using DirectionSide = Side<Manifold::direction>;
+using FrameSide = Side<Manifold::rotation>;
 
-/// α of a direction that follows e has ∂α/∂e = N/ℓ, the rows of N orthonormal to the tangent.
-Matrix<1, 2> normals(const Side<2>& side) noexcept { return {{-side.tangent[1], side.tangent[0]}}; }
-Matrix<2, 3> normals(const Side<3>& side) noexcept {
-  const Matrix3 r = side.frame.matrix();
-  return {{-r(0, 2), -r(1, 2), -r(2, 2), r(0, 1), r(1, 1), r(2, 1)}};
+/// The reference frame of an edge, which its tangent and its angle turn.
+struct EdgeReference {
+  const lie::Rotation* frame = nullptr;
+  double angle = 0.0;
+};
+
+/// Rows of ∂α/∂e across the edge: N/ℓ, the rows of N orthonormal to the tangent.
+Matrix<2, 3> across(const lie::Rotation& frame, double length) noexcept {
+  const Matrix3 r = frame.matrix();
+  return Matrix<2, 3>{{-r(0, 2), -r(1, 2), -r(2, 2), r(0, 1), r(1, 1), r(2, 1)}} / length;
 }
 
-void set_frame(Side<2>&) noexcept {}
-void set_frame(Side<3>& side) noexcept { side.frame = lie::frame_from_tangent(side.tangent); }
+void set_orientation(const EdgeReference&, PlanarSide& side) noexcept {
+  side.turn = Matrix<1, 2>{{-side.tangent[1], side.tangent[0]}} / side.length;
+}
+void set_orientation(const EdgeReference&, DirectionSide& side) noexcept {
+  side.frame = lie::frame_from_tangent(side.tangent);
+  side.turn = across(side.frame, side.length);
+}
+/// The frame of State 1 after the least turn from its tangent a to the edge's t, then turned by the angle about t.
+void set_orientation(const EdgeReference& reference, FrameSide& side) noexcept {
+  const double half = 0.5 * reference.angle;
+  side.frame = lie::transport(*reference.frame, side.tangent) * lie::Rotation{std::cos(half), std::sin(half), 0.0, 0.0};
+  const Vector3 a = reference.frame->first_axis();
+  const double cosine = dot(a, side.tangent);
+  const double scale = side.length * (1.0 + cosine);
+  const Vector3 twist = cross(side.tangent, a) / scale;
+  side.twist_rate = ((2.0 + cosine) * side.tangent + a) / scale;
+  for (int k = 0; k < 3; ++k) side.turn(0, k) = twist[k];
+  side.turn(0, 3) = 1.0;
+  side.turn.set_block(1, 0, across(side.frame, side.length));
+}
+
+/// Whether the least turn from State 1 exists.
+bool has_frame(const EdgeReference&, const PlanarSide&) noexcept { return true; }
+bool has_frame(const EdgeReference&, const DirectionSide&) noexcept { return true; }
+bool has_frame(const EdgeReference& reference, const FrameSide& side) noexcept {
+  constexpr double opposite = 1e-8;  // 1 + cos of a turn of π − 1.4e-4
+  return 1.0 + dot(reference.frame->first_axis(), side.tangent) > opposite;
+}
 
 /// The edge from the node at `p` to the next one. Its length is not positive where it has no direction.
-template <int d>
-Side<d> edge_side(const double* p) noexcept {
-  Side<d> side;
+template <Manifold manifold>
+Side<manifold> edge_side(const double* p, const EdgeReference& reference) noexcept {
+  constexpr int d = Side<manifold>::d;
+  Side<manifold> side;
   const Vector<d> edge = Vector<d>::load(p + d) - Vector<d>::load(p);
   side.length = norm(edge);
   side.tangent = edge / side.length;
-  set_frame(side);
-  side.turn = normals(side) / side.length;
+  set_orientation(reference, side);
   return side;
 }
 
-void load_held(const double* q, Side<2>& side) noexcept { side.tangent = tangent(PlanarOrientation::load(q)); }
-void load_held(const double* q, Side<3>& side) noexcept {
+void load_held(const double* q, PlanarSide& side) noexcept { side.tangent = tangent(PlanarOrientation::load(q)); }
+template <Manifold manifold>
+void load_held(const double* q, Side<manifold>& side) noexcept {
   side.frame = lie::Rotation::load(q);
   side.tangent = side.frame.first_axis();
 }
 
-StationStrain<1> strain_between(const Side<2>& earlier, const Side<2>& later) noexcept {
+template <Manifold manifold>
+Orientation<manifold> orientation(const Side<manifold>& side) noexcept {
+  return {side.frame};
+}
+StationStrain<1> strain_between(const PlanarSide& earlier, const PlanarSide& later) noexcept {
   const double turn = std::atan2(cross(earlier.tangent, later.tangent), dot(earlier.tangent, later.tangent));
   return {{{turn}}, {{-1.0}}, {{1.0}}};
 }
-DirectionOrientation direction(const Side<3>& side) noexcept { return {side.frame}; }
-StationStrain<2> strain_between(const Side<3>& earlier, const Side<3>& later) noexcept {
-  return station_strain(direction(earlier), direction(later));
+template <Manifold manifold>
+auto strain_between(const Side<manifold>& earlier, const Side<manifold>& later) noexcept {
+  return station_strain(orientation(earlier), orientation(later));
 }
 
-/// First unknown of each side within a station's stencil, L left out. Two edges: their three nodes; a held tangent
-/// stands before the first edge's nodes or after the last one's.
-struct Columns {
-  int earlier, later;
+/// Where the unknowns of one side begin within a station's stencil: of a held tangent all at `first`, of an edge its
+/// two nodes there and its angle at `angle`.
+struct SideColumns {
+  int first = 0, angle = 0;
 };
-constexpr Columns columns_of(const Station& station, int edges, int d) noexcept {
-  if (station.earlier >= edges) return {0, d - 1};
-  return {0, station.later >= edges ? 2 * d : d};
+/// Two edges: their three nodes, then their angles. A held tangent stands before the first edge or after the last
+/// one. L, which comes last, is left out.
+struct StationColumns {
+  SideColumns earlier, later;
+};
+constexpr StationColumns station_columns(const Station& station, int edges, int d, int m, int angles) noexcept {
+  if (station.earlier >= edges) return {{0, 0}, {m, m + 2 * d}};
+  if (station.later >= edges) return {{0, 2 * d}, {2 * d + angles, 0}};
+  return {{0, 3 * d}, {d, 3 * d + 1}};
 }
+template <Manifold manifold>
+constexpr int station_width = 3 * Side<manifold>::d + 2 * Side<manifold>::angles;
 
 /// ∂α/∂δ over a station's stencil: rows of one side.
-template <int d>
-void set_side(const Side<d>& side, int row, int column, Matrix<2 * (d - 1), 3 * d>& out) noexcept {
-  if (!side.is_edge()) {
-    for (int i = 0; i < d - 1; ++i) out(row + i, column + i) = 1.0;
-    return;
+template <Manifold manifold, int rows, int columns>
+void set_side(const Side<manifold>& side, int row, SideColumns at, Matrix<rows, columns>& out) noexcept {
+  constexpr int d = Side<manifold>::d, m = Side<manifold>::m;
+  for (int i = 0; i < m; ++i) {
+    if (!side.is_edge()) {
+      out(row + i, at.first + i) = 1.0;
+      continue;
+    }
+    for (int k = 0; k < d; ++k) {
+      out(row + i, at.first + k) = -side.turn(i, k);
+      out(row + i, at.first + d + k) = side.turn(i, k);
+    }
+    if constexpr (Side<manifold>::angles != 0) out(row + i, at.angle) = side.turn(i, d);
   }
-  out.set_block(row, column, -side.turn);
-  out.set_block(row, column + d, side.turn);
 }
 
-/// Adds g·∂²α/∂δ² of an edge: over its vector it is −(t vᵀ + v tᵀ)/ℓ with v = gᵀ∂α/∂e.
-template <int d>
-void add_turn_curvature(const Side<d>& side, const Vector<d - 1>& g, int column, Matrix<3 * d, 3 * d>& out) noexcept {
+/// g·∂²α over an edge's own (e, φ). Across the edge it is −(t vᵀ + v tᵀ)/ℓ over e, with v = gᵀ∂α/∂e of the rows across.
+template <Manifold manifold>
+auto edge_turn_curvature(const Side<manifold>& side, const Vector<Side<manifold>::m>& g) noexcept {
+  constexpr int d = Side<manifold>::d, m = Side<manifold>::m, n = Side<manifold>::edge_numbers;
+  constexpr int twist = m - (d - 1);  // rows before those across the edge
+  Vector<n> v, t;
+  for (int k = 0; k < d; ++k) {
+    t[k] = side.tangent[k];
+    for (int i = twist; i < m; ++i) v[k] += g[i] * side.turn(i, k);
+  }
+  Matrix<n, n> out = (outer(t, v) + outer(v, t)) * (-1.0 / side.length);
+  if constexpr (twist != 0) {
+    // With ω the rows of ∂α: g₁ ω₁' + ω₁ (g₂ ω₃ − g₃ ω₂), ω₁' = −(ω₁ − φ')(∇D/D) (README.md).
+    Vector<n> w1, along, rate, s;
+    for (int k = 0; k < n; ++k) {
+      w1[k] = side.turn(0, k);
+      s[k] = g[1] * side.turn(2, k) - g[2] * side.turn(1, k);
+      if (k < d) along[k] = w1[k], rate[k] = side.twist_rate[k];
+    }
+    out += symmetric_part(outer(w1, s)) - g[0] * symmetric_part(outer(along, rate));
+  }
+  return out;
+}
+
+/// Adds it over a station's stencil, where e is the difference of two nodes.
+template <Manifold manifold, int columns>
+void add_turn_curvature(const Side<manifold>& side, const Vector<Side<manifold>::m>& g, SideColumns at,
+                        Matrix<columns, columns>& out) noexcept {
+  constexpr int d = Side<manifold>::d, n = Side<manifold>::edge_numbers;
   if (!side.is_edge()) return;
-  const Vector<d> v = side.turn.transpose() * g;
+  const Matrix<n, n> own = edge_turn_curvature(side, g);
   for (int i = 0; i < d; ++i) {
     for (int j = 0; j < d; ++j) {
-      const double k = -(side.tangent[i] * v[j] + v[i] * side.tangent[j]) / side.length;
-      out(column + i, column + j) += k;
-      out(column + d + i, column + j) -= k;
-      out(column + i, column + d + j) -= k;
-      out(column + d + i, column + d + j) += k;
+      out(at.first + i, at.first + j) += own(i, j);
+      out(at.first + d + i, at.first + j) -= own(i, j);
+      out(at.first + i, at.first + d + j) -= own(i, j);
+      out(at.first + d + i, at.first + d + j) += own(i, j);
     }
+  }
+  if constexpr (Side<manifold>::angles != 0) {
+    for (int i = 0; i < d; ++i) {
+      out(at.angle, at.first + i) -= own(d, i);
+      out(at.first + i, at.angle) -= own(d, i);
+      out(at.angle, at.first + d + i) += own(d, i);
+      out(at.first + d + i, at.angle) += own(d, i);
+    }
+    out(at.angle, at.angle) += own(d, d);
   }
 }
 
@@ -107,24 +200,20 @@ void add_turn_curvature(const Side<d>& side, const Vector<d - 1>& g, int column,
 
 Status Nodes::declare(const CurveView& curve, const Needs& needs, KinematicsDeclaration& out) noexcept {
   return guard([&]() -> Status {
-    if (needs.material_frames && curve.dimension == 3) {
-      return Status::failure(Code::unsupported, "node positions alone carry no twist, but " + needs.reason +
-                                                    ": use kinematics = \"edge-frames\"");
-    }
     mesh_ = make_curve_mesh(curve);
     if (Status status = check_curve(mesh_, needs); !status.ok()) return status;
+    manifold_ =
+        curve.dimension == 2 ? Manifold::circle : (needs.material_frames ? Manifold::rotation : Manifold::direction);
     measured_edges_.clear();
     for (int i = 0; i < mesh_.edges(); ++i) {
       if (mesh_.stretching() || needs_spacing(i)) measured_edges_.push_back(i);
     }
-    declare_fields(out);
+    declare_fields(needs, out);
     declare_sites(out);
     out.closure_name = "uniform spacing";
     return {};
   });
 }
-
-Manifold Nodes::manifold() const noexcept { return mesh_.dimension() == 2 ? Manifold::circle : Manifold::direction; }
 
 /// A row between two nodes that are wholly held would only freeze L, unless L has nothing else to follow.
 bool Nodes::needs_spacing(int edge) const noexcept {
@@ -136,13 +225,38 @@ bool Nodes::needs_spacing(int edge) const noexcept {
   return !held || mesh_.sliding();
 }
 
-void Nodes::declare_fields(KinematicsDeclaration& out) {
+void Nodes::declare_fields(const Needs& needs, KinematicsDeclaration& out) {
   const std::vector<double> reference =
-      transported_orientations(manifold(), edge_tangents(mesh_, mesh_.curve.reference), nullptr);
-  first_frame_.assign(reference.begin(), reference.begin() + coordinate_count(manifold(), 1));
+      transported_orientations(manifold_, edge_tangents(mesh_, mesh_.curve.reference), nullptr);
+  first_frame_.assign(reference.begin(), reference.begin() + coordinate_count(manifold_, 1));
   position_ = add_field(position_field(mesh_), out);
+  if (manifold_ == Manifold::rotation) {
+    reference_frames_.clear();
+    for (int i = 0; i < mesh_.edges(); ++i) reference_frames_.push_back(lie::Rotation::load(reference.data() + 4 * i));
+    angle_ = add_field(angle_field(needs), out);
+  }
   if (mesh_.sliding()) length_ = add_field(length_field(mesh_), out);
-  if (mesh_.held_tangents > 0) held_tangent_ = add_field(held_tangent_field(mesh_, manifold(), reference), out);
+  if (mesh_.held_tangents > 0) held_tangent_ = add_field(held_tangent_field(mesh_, manifold_, reference), out);
+}
+
+/// Zero in State 1, whose frames are Bishop's. The start's are as well: the angle is what State 1's miss of them when
+/// each follows its own edge.
+FieldDeclaration Nodes::angle_field(const Needs& needs) const {
+  FieldDeclaration field;
+  field.name = "angle";
+  field.reason = needs.reason;
+  field.manifold = Manifold::circle;
+  field.count = mesh_.edges();
+  field.reference.assign(at(mesh_.edges()), 0.0);
+  const std::vector<double> tangents = edge_tangents(mesh_, mesh_.curve.start);
+  const std::vector<double> start = transported_orientations(manifold_, tangents, first_frame_.data());
+  for (int i = 0; i < mesh_.edges(); ++i) {
+    const lie::Rotation follows = lie::transport(reference_frames_[at(i)], Vector3::load(tangents.data() + 3 * i));
+    field.start.push_back(lie::log(follows.inverse() * lie::Rotation::load(start.data() + 4 * i))[0]);
+    field.station.push_back(mesh_.edge_middle(i));
+    field.fixed.push_back(mesh_.edge_held(i) ? 1 : 0);
+  }
+  return field;
 }
 
 void Nodes::declare_sites(KinematicsDeclaration& out) const {
@@ -153,18 +267,19 @@ void Nodes::declare_sites(KinematicsDeclaration& out) const {
 }
 
 SiteDeclaration Nodes::stations() const {
-  const int d = mesh_.dimension();
-  SiteDeclaration site = station_site(mesh_, d - 1, 3 * d + (mesh_.sliding() ? 1 : 0), length_);
+  const int d = mesh_.dimension(), m = tangent_count(manifold_, 1), angles = angle_.exists() ? 1 : 0;
+  SiteDeclaration site = station_site(mesh_, m, 3 * d + 2 * angles + (mesh_.sliding() ? 1 : 0), length_);
   for (int k = 0; k < site.count; ++k) {
     const Station& station = mesh_.stations[at(k)];
     int* stencil = site.stencil.data() + k * site.width;
-    const auto set = [&](int orientation, int column) {
+    const auto set = [&](int orientation, SideColumns columns) {
       const bool edge = orientation < mesh_.edges();
       const int first =
           edge ? position_.unknown_of(orientation) : held_tangent_.unknown_of(orientation - mesh_.edges());
-      for (int j = 0; j < (edge ? 2 * d : d - 1); ++j) stencil[column + j] = first + j;
+      for (int j = 0; j < (edge ? 2 * d : m); ++j) stencil[columns.first + j] = first + j;
+      if (edge && angles != 0) stencil[columns.angle] = angle_.unknown_of(orientation);
     };
-    const Columns columns = columns_of(station, mesh_.edges(), d);
+    const StationColumns columns = station_columns(station, mesh_.edges(), d, m, angles);
     set(station.earlier, columns.earlier);
     set(station.later, columns.later);
   }
@@ -192,7 +307,14 @@ Status Nodes::evaluate(const SiteEvaluation& evaluation) const noexcept {
       evaluate_length(mesh_, length_, evaluation);
       return {};
     case Site::station:
-      return planar ? evaluate_stations<2>(evaluation) : evaluate_stations<3>(evaluation);
+      switch (manifold_) {
+        case Manifold::circle:
+          return evaluate_stations<Manifold::circle>(evaluation);
+        case Manifold::direction:
+          return evaluate_stations<Manifold::direction>(evaluation);
+        default:
+          return evaluate_stations<Manifold::rotation>(evaluation);
+      }
     case Site::edge:
     case Site::closure:
       return planar ? evaluate_edge_lengths<2>(evaluation) : evaluate_edge_lengths<3>(evaluation);
@@ -203,35 +325,38 @@ Status Nodes::evaluate(const SiteEvaluation& evaluation) const noexcept {
   return Status::failure(Code::unsupported, "nodes has no such site");
 }
 
-/// ζ(α, β) of the two sides' directions, with α(δ), β(δ) of the nodes: B = ∂ζ/∂(α,β) A with A = ∂(α,β)/∂δ, and
+/// ζ(α, β) of the two sides' orientations, with α(δ), β(δ) of their unknowns: B = ∂ζ/∂(α,β) A with A = ∂(α,β)/∂δ, and
 /// Σ stress ∂²ζ/∂δ² = Aᵀ (Σ stress ∂²ζ/∂(α,β)²) A + Σ (stressᵀ∂ζ/∂(α,β)) ∂²(α,β)/∂δ².
-template <int d>
+template <Manifold manifold>
 Status Nodes::evaluate_stations(const SiteEvaluation& evaluation) const noexcept {
-  constexpr int m = d - 1;
+  using EdgeSide = Side<manifold>;
+  constexpr int d = EdgeSide::d, m = EdgeSide::m, width = station_width<manifold>;
   const double* q = evaluation.q.data();
-  const StationOutput<m, 3 * d> out(mesh_, length_.exists() ? q[length_.coordinate] : 0.0, evaluation);
-  const auto load = [&](int orientation, Side<d>& side) {
-    if (orientation < mesh_.edges()) {
-      side = edge_side<d>(q + position_.coordinate_of(orientation));
-      return side.is_edge();
+  const StationOutput<m, width> out(mesh_, length_.exists() ? q[length_.coordinate] : 0.0, evaluation);
+  const auto load = [&](int index, EdgeSide& side) {
+    if (index < mesh_.edges()) {
+      EdgeReference reference;
+      if (EdgeSide::angles != 0) reference = {&reference_frames_[at(index)], q[angle_.coordinate_of(index)]};
+      side = edge_side<manifold>(q + position_.coordinate_of(index), reference);
+      return side.is_edge() && has_frame(reference, side);
     }
     side = {};
-    load_held(q + held_tangent_.coordinate_of(orientation - mesh_.edges()), side);
+    load_held(q + held_tangent_.coordinate_of(index - mesh_.edges()), side);
     return true;
   };
 
-  Side<d> earlier, later;
-  if (!load(mesh_.stations.front().earlier, earlier)) return no_direction(mesh_.stations.front().earlier);
+  EdgeSide earlier, later;
+  if (!load(mesh_.stations.front().earlier, earlier)) return no_orientation(mesh_.stations.front().earlier, q);
   for (int k = 0; k < static_cast<int>(mesh_.stations.size()); ++k) {
     const Station& station = mesh_.stations[at(k)];
-    if (!load(station.later, later)) return no_direction(station.later);
+    if (!load(station.later, later)) return no_orientation(station.later, q);
     const StationStrain<m> strain = strain_between(earlier, later);
     if (out.wants_values()) out.write_values(k, station, strain.value);
     if (out.wants_jacobian() || out.wants_curvature()) {
-      const auto [first, second] = columns_of(station, mesh_.edges(), d);
-      Matrix<2 * m, 3 * d> turns;
-      set_side(earlier, 0, first, turns);
-      set_side(later, m, second, turns);
+      const StationColumns columns = station_columns(station, mesh_.edges(), d, m, EdgeSide::angles);
+      Matrix<2 * m, width> turns;
+      set_side(earlier, 0, columns.earlier, turns);
+      set_side(later, m, columns.later, turns);
       if (out.wants_jacobian()) {
         Matrix<m, 2 * m> by_turns;
         by_turns.set_block(0, 0, strain.by_earlier);
@@ -240,12 +365,12 @@ Status Nodes::evaluate_stations(const SiteEvaluation& evaluation) const noexcept
       }
       if (out.wants_curvature()) {
         const Vector<m> stress = out.stress(k);
-        Matrix<3 * d, 3 * d> h;
+        Matrix<width, width> h;
         if constexpr (d == 3) {
-          h = turns.transpose() * (station_curvature(direction(earlier), direction(later), stress) * turns);
+          h = turns.transpose() * (station_curvature(orientation(earlier), orientation(later), stress) * turns);
         }
-        add_turn_curvature(earlier, strain.by_earlier.transpose() * stress, first, h);
-        add_turn_curvature(later, strain.by_later.transpose() * stress, second, h);
+        add_turn_curvature(earlier, strain.by_earlier.transpose() * stress, columns.earlier, h);
+        add_turn_curvature(later, strain.by_later.transpose() * stress, columns.later, h);
         out.write_curvature(k, h);
       }
     }
@@ -266,7 +391,7 @@ Status Nodes::evaluate_edge_lengths(const SiteEvaluation& out) const noexcept {
     const double* p = q + position_.coordinate_of(edge);
     const Vector<d> vector = Vector<d>::load(p + d) - Vector<d>::load(p);
     const double measured = norm(vector);
-    if (!(measured > 0.0)) return no_direction(edge);
+    if (!(measured > 0.0)) return no_orientation(edge, q);
     const Vector<d> t = vector / measured;
     const LinearInLength share = mesh_.stretching() ? LinearInLength{} : mesh_.edge_length[at(edge)];
     if (!out.values.empty()) out.values[at(k)] = measured - share.at(length);
@@ -293,20 +418,36 @@ Status Nodes::evaluate_edge_lengths(const SiteEvaluation& out) const noexcept {
   return {};
 }
 
-Status Nodes::no_direction(int edge) const noexcept {
+Status Nodes::no_orientation(int edge, const double* q) const noexcept {
   return guard([&] {
-    return Status::failure(Code::failed, "edge " + std::to_string(edge) + " of '" + mesh_.curve.name + "' (nodes " +
-                                             std::to_string(edge) + " and " + std::to_string(edge + 1) +
-                                             ") has no length, and so no direction");
+    const int d = mesh_.dimension();
+    const double* p = q + position_.coordinate_of(edge);
+    const bool has_length = !std::equal(p, p + d, p + d);
+    return Status::failure(
+        Code::failed, "edge " + std::to_string(edge) + " of '" + mesh_.curve.name + "' (nodes " + std::to_string(edge) +
+                          " and " + std::to_string(edge + 1) +
+                          (has_length ? ") points against its direction in State 1, so that its frame "
+                                        "cannot follow it: use kinematics = \"edge-frames\""
+                                      : ") has no length, and so no direction"));
   });
 }
 
 Status Nodes::sample(Span<const double> q, Span<const double> edge_coordinate, CurveSample& out) const noexcept {
   return guard([&] {
     const double* points = q.data() + position_.coordinate;
-    const std::vector<double> orientation =
-        transported_orientations(manifold(), edge_tangents(mesh_, points), first_frame_.data());
-    return sample_edges(mesh_, points, frame_quaternions(manifold(), orientation), edge_coordinate, out);
+    const std::vector<double> tangents = edge_tangents(mesh_, points);
+    std::vector<double> frames;
+    if (manifold_ == Manifold::rotation) {
+      frames.resize(at(4 * mesh_.edges()));
+      for (int i = 0; i < mesh_.edges(); ++i) {
+        const double half = 0.5 * q[at(angle_.coordinate_of(i))];
+        const lie::Rotation follows = lie::transport(reference_frames_[at(i)], Vector3::load(tangents.data() + 3 * i));
+        (follows * lie::Rotation{std::cos(half), std::sin(half), 0.0, 0.0}).store(frames.data() + 4 * i);
+      }
+    } else {
+      frames = frame_quaternions(manifold_, transported_orientations(manifold_, tangents, first_frame_.data()));
+    }
+    return sample_edges(mesh_, points, frames, edge_coordinate, out);
   });
 }
 

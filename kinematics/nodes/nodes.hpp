@@ -6,19 +6,21 @@
 #include "core/curve_kinematics/fields.hpp"
 #include "core/interfaces/kinematics.hpp"
 #include "core/interfaces/parameter.hpp"
+#include "core/lie/so3.hpp"
 
 namespace bowstring {
 
-/// Node positions alone: the orientation of an edge is that of p_{i+1} − p_i, so that there is no twist, and the strain
-/// of a station is the turn between neighbouring edges. A wire has rows |p_{i+1} − p_i| = ℓ_i (README.md beside this
-/// file).
+/// Node positions: the orientation of an edge is that of p_{i+1} − p_i, and the strain of a station is the turn between
+/// neighbouring edges. Where a term needs material frames, one angle per edge turns the edge's frame of State 1,
+/// carried to its present direction by the least turn. A wire has rows |p_{i+1} − p_i| = ℓ_i. README.md has the
+/// formulas.
 class Nodes final : public Kinematics {
  public:
   explicit Nodes(const ParameterSet&) {}
 
-  /// Refuses material frames.
   Status declare(const CurveView& curve, const Needs& needs, KinematicsDeclaration& out) noexcept override;
-  /// `failed` naming the edge where one has length zero, and so no direction.
+  /// `failed` naming the edge where one has length zero, and so no direction, or has turned by half a turn against
+  /// State 1, so that its frame cannot follow.
   Status evaluate(const SiteEvaluation& evaluation) const noexcept override;
   Status sample(Span<const double> q, Span<const double> edge_coordinate, CurveSample& out) const noexcept override;
   /// EI ε |p|/h³, |p| the largest distance from the origin and h the shortest edge: a position is rounded to ε |p|,
@@ -26,21 +28,23 @@ class Nodes final : public Kinematics {
   double rounding_floor(double bending_stiffness) const noexcept override;
 
  private:
-  void declare_fields(KinematicsDeclaration& out);
+  void declare_fields(const Needs& needs, KinematicsDeclaration& out);
+  FieldDeclaration angle_field(const Needs& needs) const;
   void declare_sites(KinematicsDeclaration& out) const;
   SiteDeclaration stations() const;
   SiteDeclaration edge_lengths() const;
   bool needs_spacing(int edge) const noexcept;
-  Manifold manifold() const noexcept;
 
-  template <int d>
+  template <Manifold manifold>
   Status evaluate_stations(const SiteEvaluation& evaluation) const noexcept;
   template <int d>
   Status evaluate_edge_lengths(const SiteEvaluation& out) const noexcept;
-  Status no_direction(int edge) const noexcept;
+  Status no_orientation(int edge, const double* q) const noexcept;
 
   CurveMesh mesh_;
-  FieldSlot position_, length_, held_tangent_;
+  Manifold manifold_ = Manifold::direction;  ///< of an edge's orientation
+  FieldSlot position_, angle_, length_, held_tangent_;
+  std::vector<lie::Rotation> reference_frames_;  ///< of the edges in State 1; with material frames only
   /// Edges whose length is a place: on a stretching curve all, at site `edge`; on a wire those with a spacing row, at
   /// site `closure`.
   std::vector<int> measured_edges_;

@@ -61,7 +61,7 @@ std::vector<SmallScene> scenes() {
         scene.vessel_kinematics = scene.wire_kinematics = kinematics;
         scene.contact = centerline;
         scene.wire_ends = R"(["clamped", "pinned"])";
-        scene.vessel_frames = dimension == 3 && std::string(kinematics) == "edge-frames";
+        scene.vessel_frames = dimension == 3;
         out.push_back(scene);
       }
     }

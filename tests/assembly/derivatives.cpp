@@ -63,6 +63,10 @@ std::vector<NamedScene> scenes() {
   out.back().scene.vessel_ends = R"(["clamped", "held-edge"])";
   out.back().scene.wire_ends = R"(["clamped", "pinned"])";
   out.back().scene.contact = polyline;
+  out.push_back({"space: nodes with angles on both, clamped", spatial("nodes", "nodes")});
+  out.back().scene.vessel_frames = out.back().scene.wire_frames = true;
+  out.back().scene.vessel_ends = R"(["clamped", "held-edge"])";
+  out.back().scene.wire_ends = R"(["held-edge", "clamped"])";
   out.push_back({"space: frames around nodes with a free tip", spatial("edge-frames", "nodes")});
   out.back().scene.vessel_frames = true;
   out.back().scene.wire_ends = R"(["clamped", "free"])";

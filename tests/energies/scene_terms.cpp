@@ -160,7 +160,7 @@ TEST_CASE("vessel-strain warns, with figures, where nothing resists stretching, 
   }
 }
 
-TEST_CASE("torsional stiffness is idle in the plane, and refused where node positions carry no twist") {
+TEST_CASE("torsional stiffness is idle in the plane") {
   SmallScene scene;
   std::string text = scene.text();
   text.insert(text.find("[[energy]]\ntype = \"anchoring\""), "torsional-stiffness = \"9 N mm^2\"\n");
@@ -168,15 +168,6 @@ TEST_CASE("torsional stiffness is idle in the plane, and refused where node posi
   REQUIRE(session->scene->without_effect.size() == 1);
   CHECK(mentions(session->scene->without_effect, "'torsional-stiffness' of energy 'vessel-strain' has no effect",
                  "a curve in the plane does not twist"));
-
-  SmallScene space;
-  space.dimension = 3;
-  space.vessel_frames = true;
-  space.vessel_kinematics = "nodes";
-  const std::string refusal = refusal_of(space.text());
-  CHECK(refusal.find("kinematics 'nodes' of 'vessel'") != std::string::npos);
-  CHECK(refusal.find("torsional-stiffness > 0") != std::string::npos);
-  CHECK(refusal.find("use kinematics = \"edge-frames\"") != std::string::npos);
 }
 
 TEST_CASE("a foundation per length is refused on a wire that slides; axial tension warns on a wire that does not") {
