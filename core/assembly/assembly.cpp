@@ -154,6 +154,7 @@ bool Assembly::folds(const SiteTable& table) const noexcept {
 }
 
 Status Assembly::update_rows(bool jacobian) {
+  if (!epoch_failure_.ok()) return epoch_failure_;
   if (has_row_jacobians_ || (has_rows_ && !jacobian)) return row_status_;
   row_status_ = {};
   double* out = row_.data();
@@ -321,6 +322,14 @@ bool Assembly::epoch_due() const noexcept {
 }
 
 Status Assembly::new_epoch() noexcept {
+  epoch_failure_ = bind_rows();
+  if (!epoch_failure_.ok()) return epoch_failure_;
+  has_rows_ = has_row_jacobians_ = false;
+  ++epochs_;
+  return {};
+}
+
+Status Assembly::bind_rows() noexcept {
   try {
     for (ConstraintUse& use : scene_.constraints) {
       const int rows = use.rows.rows;
@@ -338,8 +347,6 @@ Status Assembly::new_epoch() noexcept {
   } catch (const std::exception& error) {
     return Status::failure(Code::failed, error.what());
   }
-  has_rows_ = has_row_jacobians_ = false;
-  ++epochs_;
   return {};
 }
 
@@ -374,6 +381,7 @@ Status Assembly::site_stress(Span<const double> q, int curve, Site site, std::ve
 }
 
 Status Assembly::report(Span<const double> q, int constraint, std::vector<RowReport>& out) {
+  if (!epoch_failure_.ok()) return epoch_failure_;
   if (Status status = update_places(q); !status.ok()) return status;
   return scene_.constraints[at(constraint)].constraint->report(*this, out);
 }

@@ -96,6 +96,7 @@ class Assembly final : public Problem, public PlaceTables {
   void number_unknowns();
   void make_tables();
   void make_rows();
+  Status bind_rows() noexcept;
   void make_patterns();
   void make_order();
   void make_scales();
@@ -132,6 +133,7 @@ class Assembly final : public Problem, public PlaceTables {
   ProblemSummary summary_;
   double guard_ = std::numeric_limits<double>::infinity();
   int epochs_ = 1;
+  Status epoch_failure_;  // after one, constraints and patterns no longer fit each other: nothing reads rows any more
 
   // The state that the tables hold, and what of it has been computed.
   std::vector<double> q_;

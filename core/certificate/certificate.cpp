@@ -108,7 +108,7 @@ void judge_crossings(const Assembly& assembly, Certificate& out) {
   const Scene& scene = assembly.scene();
   std::vector<std::pair<int, int>> seen;
   for (const ConstraintUse& use : scene.constraints) {
-    if (use.scene.on.size() != 2 || use.scene.radius[1] == nullptr) continue;
+    if (use.scene.on.size() != 2 || use.scene.radius[1] == nullptr || !use.rows.inside_lumen) continue;
     const std::pair<int, int> pair{use.scene.on[0].index, use.scene.on[1].index};
     if (std::find(seen.begin(), seen.end(), pair) != seen.end()) continue;
     seen.push_back(pair);

@@ -31,25 +31,21 @@ void check_origins(const Node& table, const ComponentChoice& component, const st
 }
 
 /// Both curves at once: `on = [wire, vessel]`.
-void check_pair(const Node& on, const std::string& owner, const CurveNames& names, Report& report) {
+/// One curve or more; a wire before the vessel that it lies in.
+void check_curves(const Node& on, const std::string& owner, const CurveNames& names, Report& report) {
   const std::string subject = "'on' of " + owner;
-  const bool pair = on.is_list() && on.items.size() == 2;
-  if (!pair) {
-    const std::string found =
-        on.is_list() ? "has " + std::to_string(on.items.size()) + " entries" : "is " + description(on);
-    report.error(on.position, subject + " " + found, "two curves: [wire, vessel]",
-                 "write on = [\"<wire>\", \"<vessel>\"]");
+  if (!on.is_list() || on.items.empty()) {
+    report.error(on.position, subject + " " + (on.is_list() ? "is empty" : "is " + description(on)),
+                 "a list of curves, for contact [wire, vessel]", "write on = [\"<wire>\", \"<vessel>\"]");
     return;
   }
-  const std::string& first = on.items[0].text;
-  const std::string& second = on.items[1].text;
-  if (contains_name(names.vessels, first) && contains_name(names.wires, second)) {
+  if (on.items.size() == 2 && contains_name(names.vessels, on.items[0].text) &&
+      contains_name(names.wires, on.items[1].text)) {
     report.error(on.position, subject + " has the vessel first", "[wire, vessel]",
-                 "write on = [\"" + second + "\", \"" + first + "\"]");
+                 "write on = [\"" + on.items[1].text + "\", \"" + on.items[0].text + "\"]");
     return;
   }
-  check_reference(on.items[0], subject, "wire", names.wires, names, report);
-  check_reference(on.items[1], subject, "vessel", names.vessels, names, report);
+  for (const Node& curve : on.items) check_reference(curve, subject, "curve", names.all(), names, report);
 }
 
 void report_missing_on(const Node& table, const std::string& owner, const std::string& expected,
@@ -88,10 +84,10 @@ ConstraintTable read_constraint(const Node& table, const CurveNames& names, Read
   check_name(table, owner, reading.report);
   if (const Entry* on = table.find("on")) {
     for (const Node& curve : on->value.items) constraint.on.push_back(curve.text);
-    check_pair(on->value, owner, names, reading.report);
+    check_curves(on->value, owner, names, reading.report);
   } else {
-    report_missing_on(table, owner, "two curves: [wire, vessel]", "add on = [\"<wire>\", \"<vessel>\"]",
-                      reading.report);
+    report_missing_on(table, owner, "a list of curves, for contact [wire, vessel]",
+                      "add on = [\"<wire>\", \"<vessel>\"]", reading.report);
   }
   constraint.component = read_component(table, use_of(Kind::constraint, owner), reading);
   return constraint;

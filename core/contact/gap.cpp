@@ -183,6 +183,52 @@ ClosestPoint closest_on_polyline(const Centerline& curve, const double* x, GapSh
   return best;
 }
 
+/// φ's derivatives in σ and t at a place, with d = x − q and its length's square r.
+struct GapPartials {
+  double d[3] = {}, slope[3] = {}, chord[3] = {};  // d, q' and ∂x/∂t
+  GapFormValue f{};
+  double r_sigma = 0.0, r_t = 0.0, c_sigma = 0.0, c_t = 0.0;
+  double t = 0.0, sigma_sigma = 0.0, sigma_t = 0.0, t_t = 0.0;  // φ_t, φ_σσ, φ_σt, φ_tt
+};
+
+GapPartials gap_partials(const Centerline& curve, const WirePoint& point, GapForm form,
+                         const ClosestPoint& closest) noexcept {
+  double x[3] = {};
+  point.position(curve.dimension, x);
+  const GapShape shape = point.shape(form);
+  const CurvePoint q = segment_polynomial(curve, closest.at.segment, x).at(closest.at.u);
+  GapPartials p;
+  for (int k = 0; k < 3; ++k) {
+    p.d[k] = -q.position[k];
+    p.slope[k] = q.slope[k];
+    if (point.nodes == 2 && k < curve.dimension) p.chord[k] = point.points[curve.dimension + k] - point.points[k];
+  }
+  p.f = gap_form(form, dot(p.d, p.d), q.radius - shape.wire_radius);
+  p.r_sigma = -2.0 * dot(p.d, p.slope);
+  p.c_sigma = q.radius_slope;
+  p.sigma_sigma = gap_value(q, shape).second;
+  if (point.nodes == 1) return p;
+  const GapFormValue& f = p.f;
+  p.r_t = 2.0 * dot(p.d, p.chord);
+  p.c_t = point.radius[0] - point.radius[1];
+  p.t = f.r * p.r_t + f.c * p.c_t;
+  p.sigma_t = f.rr * p.r_sigma * p.r_t + f.rc * (p.r_sigma * p.c_t + p.r_t * p.c_sigma) + f.cc * p.c_sigma * p.c_t -
+              2.0 * f.r * dot(p.chord, p.slope);
+  p.t_t = f.rr * p.r_t * p.r_t + 2.0 * f.rc * p.r_t * p.c_t + f.cc * p.c_t * p.c_t + 2.0 * f.r * dot(p.chord, p.chord);
+  return p;
+}
+
+/// h_t and h_tt along a chord, σ following.
+struct ChordDerivatives {
+  double slope = 0.0, reduced_second = 0.0;
+};
+ChordDerivatives chord_derivatives(const Centerline& curve, const WirePoint& point, GapForm form,
+                                   const ClosestPoint& closest) noexcept {
+  const GapPartials p = gap_partials(curve, point, form, closest);
+  const bool sigma_moves = closest.location == Location::interior && p.sigma_sigma > 0.0;
+  return {p.t, sigma_moves ? p.t_t - p.sigma_t * p.sigma_t / p.sigma_sigma : p.t_t};
+}
+
 /// One monotone assignment of wire points to samples of a curve, by dynamic programming over the points.
 class MonotoneBinding {
  public:
@@ -304,51 +350,130 @@ ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape
   return best;
 }
 
+ClosestPoint gap_at(const Centerline& curve, const double* x, GapShape shape, CurveCoordinate at) noexcept {
+  return closest_point(SegmentSearch(curve, at.segment, x, shape), at, Location::vertex);
+}
+
+void WirePoint::position(int dimension, double* x) const noexcept {
+  for (int k = 0; k < dimension; ++k) {
+    x[k] = nodes == 1 ? points[k] : (1.0 - t) * points[k] + t * points[dimension + k];
+  }
+}
+
+GapShape WirePoint::shape(GapForm form) const noexcept {
+  return {form, nodes == 1 ? radius[0] : (1.0 - t) * radius[0] + t * radius[1]};
+}
+
+ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
+                             double start) noexcept {
+  struct Sample {
+    double t = 0.0, slope = 0.0, second = 0.0;  // of sign·h
+    ClosestPoint closest;
+  };
+  const auto at = [&](double t, double from) {
+    WirePoint point = chord;
+    point.t = t;
+    double x[3] = {};
+    point.position(curve.dimension, x);
+    Sample sample;
+    sample.t = t;
+    sample.closest = closest(curve, x, point.shape(form), window, from);
+    const ChordDerivatives d = chord_derivatives(curve, point, form, sample.closest);
+    sample.slope = sign * d.slope;
+    sample.second = sign * d.reduced_second;
+    return sample;
+  };
+  Sample low = at(0.0, start), high = at(1.0, start);
+  const double lesser_end = std::min(sign * low.closest.gap, sign * high.closest.gap);
+  const auto answer = [lesser_end](const Sample& sample, bool interior) {
+    return ChordExtremum{sample.t, interior, lesser_end, sample.closest};
+  };
+  if (low.closest.location == Location::window_edge) return answer(low, false);
+  if (high.closest.location == Location::window_edge) return answer(high, false);
+  if (low.slope <= 0.0 && high.slope >= 0.0) {
+    return answer(sign * low.closest.gap >= sign * high.closest.gap ? low : high, false);
+  }
+  if (low.slope <= 0.0 || high.slope >= 0.0) return answer(high.slope >= 0.0 ? high : low, false);
+
+  // Newton's steps on the slope from the secant's, by bisection where they leave the bracket.
+  Sample here = at(low.slope / (low.slope - high.slope), low.closest.at.sigma());
+  for (int i = 0; i < max_steps; ++i) {
+    if (here.closest.location == Location::window_edge || std::isnan(here.slope)) break;
+    if (here.slope == 0.0) break;
+    (here.slope > 0.0 ? low : high) = here;
+    double next = here.second < 0.0 ? here.t - here.slope / here.second : nan_value;
+    if (!(next > low.t && next < high.t)) next = 0.5 * (low.t + high.t);
+    if (std::abs(next - here.t) <= 4.0 * epsilon || high.t - low.t <= 4.0 * epsilon) break;
+    here = at(next, here.closest.at.sigma());
+  }
+  return answer(here, true);
+}
+
 NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape shape, const ClosestPoint& closest,
+                          double* gradient, double weight, double* hessian) noexcept {
+  WirePoint point;
+  point.points = x;
+  point.radius[0] = shape.wire_radius;
+  return gap_derivatives(curve, point, shape.form, closest, gradient, weight, hessian);
+}
+
+NodeRange gap_derivatives(const Centerline& curve, const WirePoint& point, GapForm form, const ClosestPoint& closest,
                           double* gradient, double weight, double* hessian) noexcept {
   const int dim = curve.dimension;
   const Stencil nodes = stencil(curve.interpolation, closest.at, curve.nodes);
-  const CurvePoint q = segment_polynomial(curve, closest.at.segment, x).at(closest.at.u);
-  const double d[3] = {-q.position[0], -q.position[1], -q.position[2]};
-  const GapFormValue f = gap_form(shape.form, dot(d, d), q.radius - shape.wire_radius);
+  const GapPartials p = gap_partials(curve, point, form, closest);
 
-  // With z_0 = x and z_k the nodes, d = Σ_a w_a z_a: ∂d/∂z_a = w_a I, ∂²d/∂z_a∂σ = w'_a I.
-  const int blocks = 1 + nodes.nodes.count;
-  double w[1 + max_stencil] = {1.0}, w1[1 + max_stencil] = {0.0};
+  // With z_a the nodes of the wire and of the wall, d = Σ_a w_a z_a: ∂d/∂z_a = w_a I, ∂²d/∂z_a∂σ = w_{a,σ} I, and so
+  // for t.
+  constexpr int most = 2 + max_stencil;
+  const int blocks = point.nodes + nodes.nodes.count;
+  double w[most] = {1.0}, w_sigma[most] = {}, w_t[most] = {};
+  if (point.nodes == 2) {
+    w[0] = 1.0 - point.t, w[1] = point.t;
+    w_t[0] = -1.0, w_t[1] = 1.0;
+  }
   for (int k = 0; k < nodes.nodes.count; ++k) {
-    w[1 + k] = -nodes.value[k];
-    w1[1 + k] = -nodes.slope[k];
+    w[point.nodes + k] = -nodes.value[k];
+    w_sigma[point.nodes + k] = -nodes.slope[k];
   }
 
   if (gradient) {
     for (int a = 0; a < blocks; ++a) {
-      for (int i = 0; i < dim; ++i) gradient[a * dim + i] = 2.0 * f.r * w[a] * d[i];
+      for (int i = 0; i < dim; ++i) gradient[a * dim + i] = 2.0 * p.f.r * w[a] * p.d[i];
     }
   }
   if (!hessian) return nodes.nodes;
 
-  // φ_zσ by blocks: 2 w_a (F_rr r_σ + F_rc c') d + 2 F_r (w'_a d − w_a q').
-  const GapValue value = gap_value(q, shape);
-  const bool eliminate = closest.location == Location::interior && value.second > 0.0;
-  const double r1 = -2.0 * dot(d, q.slope);
-  const double along_d = 2.0 * (f.rr * r1 + f.rc * q.radius_slope);
-  double mixed[3 * (1 + max_stencil)] = {};
-  if (eliminate) {
-    for (int a = 0; a < blocks; ++a) {
-      for (int i = 0; i < dim; ++i) {
-        mixed[a * dim + i] = (along_d * w[a] + 2.0 * f.r * w1[a]) * d[i] - 2.0 * f.r * w[a] * q.slope[i];
+  // φ_zη by blocks: 2 w_a (F_rr r_η + F_rc c_η) d + 2 F_r (w_{a,η} d + w_a d_η). What moves is eliminated one after the
+  // other: first σ, then t from what that leaves.
+  const bool sigma_moves = closest.location == Location::interior && p.sigma_sigma > 0.0;
+  const double t_second = sigma_moves ? p.t_t - p.sigma_t * p.sigma_t / p.sigma_sigma : p.t_t;
+  const bool t_moves = point.extremal && t_second != 0.0;
+  const double along_sigma = 2.0 * (p.f.rr * p.r_sigma + p.f.rc * p.c_sigma);
+  const double along_t = 2.0 * (p.f.rr * p.r_t + p.f.rc * p.c_t);
+  double by_sigma[3 * most] = {}, by_t[3 * most] = {};
+  for (int a = 0; a < blocks; ++a) {
+    for (int i = 0; i < dim; ++i) {
+      const int k = a * dim + i;
+      if (sigma_moves) {
+        by_sigma[k] = (along_sigma * w[a] + 2.0 * p.f.r * w_sigma[a]) * p.d[i] - 2.0 * p.f.r * w[a] * p.slope[i];
       }
+      if (!t_moves) continue;
+      by_t[k] = (along_t * w[a] + 2.0 * p.f.r * w_t[a]) * p.d[i] + 2.0 * p.f.r * w[a] * p.chord[i];
+      if (sigma_moves) by_t[k] -= by_sigma[k] * p.sigma_t / p.sigma_sigma;
     }
   }
 
-  const double elimination = eliminate ? weight / value.second : 0.0;
+  const double from_sigma = sigma_moves ? weight / p.sigma_sigma : 0.0;
+  const double from_t = t_moves ? weight / t_second : 0.0;
   double* out = hessian;
   for (int row = 0; row < blocks * dim; ++row) {
     const int a = row / dim, i = row % dim;
     for (int column = 0; column <= row; ++column) {
       const int b = column / dim, j = column % dim;
-      const double block = (i == j ? 2.0 * f.r : 0.0) + 4.0 * f.rr * d[i] * d[j];
-      *out++ = weight * w[a] * w[b] * block - elimination * mixed[row] * mixed[column];
+      const double block = (i == j ? 2.0 * p.f.r : 0.0) + 4.0 * p.f.rr * p.d[i] * p.d[j];
+      *out++ = weight * w[a] * w[b] * block - from_sigma * by_sigma[row] * by_sigma[column] -
+               from_t * by_t[row] * by_t[column];
     }
   }
   return nodes.nodes;

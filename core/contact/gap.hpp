@@ -70,11 +70,45 @@ ClosestPoint closest(const Centerline& curve, const double* x, GapShape shape, W
 /// of it.
 ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape shape) noexcept;
 
-/// Derivatives of h at a closest point in z = (x, nodes of the segment's stencil), by the envelope theorem:
-/// ∇h = φ_z at fixed σ*, ∇²h = φ_zz − φ_zσ φ_σz/φ_σσ at an interior minimum and φ_zz elsewhere.
-/// `gradient`: (1 + count)·dimension numbers, x first, then the nodes in order; null where not wanted.
-/// `hessian`: `weight`·∇²h as packed lower triangle of that order, row by row; null where not wanted.
-/// Returns the nodes; at most `max_stencil` of them.
+/// The gap at a place that is given instead of searched, as a closest point that stays there.
+ClosestPoint gap_at(const Centerline& curve, const double* x, GapShape shape, CurveCoordinate at) noexcept;
+
+/// A point of a wire: its node, or x = (1 − t) p_0 + t p_1 on the straight chord between two nodes.
+struct WirePoint {
+  int nodes = 1;                   ///< 1 or 2
+  const double* points = nullptr;  ///< nodes × dimension, mm
+  double radius[2] = {0.0, 0.0};   ///< of the wire at the nodes, mm
+  double t = 0.0;
+  bool extremal = false;  ///< t is where h is largest or least along the chord, and moves with the nodes
+
+  void position(int dimension, double* x) const noexcept;
+  GapShape shape(GapForm form) const noexcept;
+};
+
+/// Where h is extremal along a chord.
+struct ChordExtremum {
+  double t = 0.0;
+  bool interior = false;    ///< h_t = 0 there; otherwise at an end
+  double lesser_end = 0.0;  ///< sign·h at the end where it is smaller, mm
+  ClosestPoint closest;
+};
+
+/// The largest (`sign` = 1) or least (−1) h along a chord between two nodes. Along a segment of a wire h − which is the
+/// distance from a curve that bends at most moderately − has at most one stationary point that matters; of two end
+/// maxima the larger one is taken. `start` is σ of the search at both ends. The location is `window_edge` where a
+/// closest point leaves the window.
+ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
+                             double start) noexcept;
+
+/// Derivatives of h at a closest point in z = (wire nodes, nodes of the segment's stencil), by the envelope theorem:
+/// ∇h = φ_z at fixed σ* and t*, ∇²h = φ_zz − φ_zη φ_ηη⁻¹ φ_ηz with η what moves with z: σ at an interior minimum, t at
+/// an interior extremum of the chord. `gradient`: (wire nodes + count)·dimension numbers, the wire's first, then the
+/// nodes in order; null where not wanted. `hessian`: `weight`·∇²h as packed lower triangle of that order, row by row;
+/// null where not wanted. Returns the nodes; at most `max_stencil` of them.
+NodeRange gap_derivatives(const Centerline& curve, const WirePoint& point, GapForm form, const ClosestPoint& closest,
+                          double* gradient, double weight, double* hessian) noexcept;
+
+/// The same for a node of the wire at x.
 NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape shape, const ClosestPoint& closest,
                           double* gradient, double weight, double* hessian) noexcept;
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/interfaces/curve.hpp"
+#include "core/interfaces/parameter.hpp"
 #include "core/interfaces/place.hpp"
 #include "core/interfaces/span.hpp"
 #include "core/interfaces/status.hpp"
@@ -15,8 +16,9 @@ struct ConstraintScene {
   int dimension = 3;
   std::vector<CurveView> on;          ///< the curves named in `on`, in that order
   std::vector<const double*> radius;  ///< per curve of `on`: nodal radius, mm, or null where none is known
-  bool starts_along = false;          ///< the first curve starts along the second
-  double start_arc = 0.0;             ///< and there, at this arc coordinate of it, mm
+  bool starts_along = false;          ///< the first curve starts along the second …
+  double start_arc = 0.0;             ///< … from this arc coordinate of it, mm …
+  double end_arc = 0.0;               ///< … to this one, mm
   int window_segments = 2;            ///< what the solver asks for where the user says nothing: the larger of this …
   double window_length = 0.0;         ///< … and this, mm
 };
@@ -26,7 +28,11 @@ struct RowDeclaration {
   std::vector<int> place_begin;      ///< rows + 1: row r reads places [place_begin[r], place_begin[r+1])
   std::vector<Place> places;         ///< `curve` is the scene's index (CurveView::index)
   std::vector<double> lower, upper;  ///< per row; ±infinity where unbounded; equal: an equality
+  /// The first curve, a wire, belongs inside of the second's lumen: the certificate then looks whether it passes through
+  /// the wall between its rows.
+  bool inside_lumen = false;
   std::vector<std::string> warnings;
+  std::vector<IdleParameter> without_effect;
 };
 
 /// The state that rows are evaluated at: per curve and site the table of y, count × values.
@@ -59,6 +65,7 @@ struct RowReport {
   double gap = 0.0;                       ///< mm, ≤ 0 inside
   double clearance = 0.0;                 ///< mm
   double direction[3] = {0.0, 0.0, 0.0};  ///< unit: of the force that the vessel exerts on the wire
+  double force_per_multiplier = 1.0;      ///< N per unit of the row's multiplier; a bilateral row's force may reverse
 };
 
 /// kind `constraint`: rows lower ≤ r(y) ≤ upper that couple places. Within its declared places a row is smooth;

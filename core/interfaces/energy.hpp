@@ -5,6 +5,7 @@
 
 #include "core/interfaces/curve.hpp"
 #include "core/interfaces/law.hpp"
+#include "core/interfaces/parameter.hpp"
 
 namespace bowstring {
 
@@ -13,11 +14,6 @@ struct Needs {
   bool material_frames = false;  ///< three-component strain in space (torsion, anisotropy, preshape)
   bool stretch = false;          ///< the length of every edge
   std::string reason;            ///< for `explain` and refusals: "vessel-strain: torsional-stiffness > 0"
-};
-
-/// A parameter that this scene cannot feel. It is allowed, and `explain` says so where the user has given it.
-struct IdleParameter {
-  std::string key, reason;  ///< "torsional-stiffness", "a curve in the plane does not twist"
 };
 
 struct EnergyDeclaration {

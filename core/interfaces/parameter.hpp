@@ -31,6 +31,11 @@ struct ParameterDeclaration {
   int item_count = 0;
 };
 
+/// A parameter that this scene cannot feel. It is allowed, and `explain` says so where the user has given it.
+struct IdleParameter {
+  std::string key, reason;  ///< "torsional-stiffness", "a curve in the plane does not twist"
+};
+
 /// A quantity along a curve. Arc coordinates in mm.
 struct Profile {
   enum class Form : int { constant, table, segments, column };

@@ -11,8 +11,8 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr int most_values = 8;   // of a place's y
-constexpr int most_width = 32;   // of its stencil
+constexpr int most_values = 8;  // of a place's y
+constexpr int most_width = 32;  // of its stencil
 
 std::string counted(std::size_t count, const char* what) { return std::to_string(count) + " " + what; }
 
@@ -53,7 +53,8 @@ std::string flaw_of(const FieldDeclaration& field) {
     const auto first = field.fixed.begin() + i * per_entry;
     const auto free = std::count(first, first + per_entry, 0);
     if (free != 0 && free != per_entry) {
-      return "holds entry " + std::to_string(i) + " of " + name + " in part; a rotation or direction is held as a whole";
+      return "holds entry " + std::to_string(i) + " of " + name +
+             " in part; a rotation or direction is held as a whole";
     }
   }
   return "";

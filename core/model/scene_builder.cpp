@@ -113,9 +113,9 @@ class Builder {
   void add_wire(const WireTable& table);
   void start_wire(Curve& wire, const Curve& vessel, int nodes) const;
   Extension wire_extension(const WireTable& table);
-  void check_clearance(const Curve& wire, const Curve& vessel, const std::string& position);
   void declare_energies();
-  void note_without_effect(const EnergyUse& use);
+  void note_without_effect(const std::string& owner, const ParameterSet& parameters,
+                           const std::vector<IdleParameter>& without_effect);
   void declare_kinematics();
   void sample_laws();
   bool sample_law(EnergyUse& use, LawUse& law, const ComponentChoice& choice);
@@ -391,27 +391,6 @@ void Builder::start_wire(Curve& wire, const Curve& vessel, int nodes) const {
   wire.start = wire.reference;
 }
 
-void Builder::check_clearance(const Curve& wire, const Curve& vessel, const std::string& position) {
-  if (vessel.radius.empty() || wire.radius.empty()) return;
-  const double stretch = vessel.arc.back() / wire.arc.back();
-  double worst = 0.0;
-  int node = -1;
-  for (int i = 0; i < wire.view.nodes; ++i) {
-    const double lumen = interpolate_linearly(vessel.arc, vessel.radius, wire.arc[at(i)] * stretch);
-    const double excess = wire.radius[at(i)] - lumen;
-    if (excess < worst) continue;
-    worst = excess;
-    node = i;
-  }
-  if (node < 0) return;
-  error(position,
-        "wire '" + wire.name + "' (radius " + number(wire.radius[at(node)]) + " mm) is as wide as the lumen of '" +
-            vessel.name + "' or wider, by " + number(worst) + " mm at s = " + number(wire.arc[at(node)] * stretch) +
-            " mm",
-        "a wire radius smaller than the lumen's everywhere",
-        "reduce the wire's radius, or use a constraint without clearance");
-}
-
 Extension Builder::wire_extension(const WireTable& table) {
   const bool held = table.end[0].type != EndType::free && table.end[1].type != EndType::free;
   if (table.length == LengthRule::by_ends) {
@@ -456,9 +435,6 @@ void Builder::add_wire(const WireTable& table) {
           "one value along a sliding wire", "give a value, or let the wire end inside the vessel");
   } else {
     curve->radius = std::move(radius);
-    if (curve->along >= 0 && is_constrained({table.name, table.vessel})) {
-      check_clearance(*curve, *vessel, table.radius.position.empty() ? table.position : table.radius.position);
-    }
   }
   scene_->curves.push_back(std::move(curve));
 }
@@ -485,7 +461,7 @@ void Builder::declare_energies() {
       curve->needs.reason += (curve->needs.reason.empty() ? "" : "; ") + needs.reason;
     }
     for (const std::string& warning : use.declaration.warnings) scene_->warnings.push_back(warning);
-    note_without_effect(use);
+    note_without_effect("energy '" + use.label + "'", use.parameters, use.declaration.without_effect);
     for (std::size_t k = 0; k < use.declaration.laws.size(); ++k) {
       use.laws.push_back({use.declaration.laws[k], use.declaration.descriptions[k], {}});
     }
@@ -493,12 +469,13 @@ void Builder::declare_energies() {
   }
 }
 
-void Builder::note_without_effect(const EnergyUse& use) {
-  for (const IdleParameter& idle : use.declaration.without_effect) {
-    const ParameterValue* value = use.parameters.find(idle.key.c_str());
+void Builder::note_without_effect(const std::string& owner, const ParameterSet& parameters,
+                                  const std::vector<IdleParameter>& without_effect) {
+  for (const IdleParameter& idle : without_effect) {
+    const ParameterValue* value = parameters.find(idle.key.c_str());
     if (value == nullptr || value->position.empty()) continue;  // nobody has given it
-    scene_->without_effect.push_back(value->position + ": '" + idle.key + "' of energy '" + use.label +
-                                     "' has no effect: " + idle.reason);
+    scene_->without_effect.push_back(value->position + ": '" + idle.key + "' of " + owner +
+                                     " has no effect: " + idle.reason);
   }
 }
 
@@ -593,7 +570,10 @@ void Builder::declare_constraints() {
       use.scene.on.push_back(curve.view);
       use.scene.radius.push_back(curve.radius.empty() ? nullptr : curve.radius.data());
     }
-    if (table.on.size() == 2) use.scene.starts_along = find(table.on[0])->along == find(table.on[1])->view.index;
+    if (table.on.size() == 2 && find(table.on[0])->along == find(table.on[1])->view.index) {
+      use.scene.starts_along = true;
+      use.scene.end_arc = find(table.on[1])->arc.back();
+    }
     use.scene.window_segments = traits_.window_segments;
     use.scene.window_length = traits_.window_length;
     status = use.constraint->declare(use.scene, use.rows);
@@ -601,6 +581,7 @@ void Builder::declare_constraints() {
     if (!passed(status, table.component)) continue;
     if (!sound(flaw_of(use.rows), table.component, "'" + table.label + "'")) continue;
     for (const std::string& warning : use.rows.warnings) scene_->warnings.push_back(warning);
+    note_without_effect("constraint '" + table.label + "'", table.component.parameters, use.rows.without_effect);
     scene_->constraints.push_back(std::move(use));
   }
 }

@@ -169,7 +169,7 @@ Json contacts(const Scene& scene, const Readings& readings) {
   for (const ContactRecord& contact : readings.contacts) {
     const double edge = std::floor(contact.wire_coordinate);
     out.push_back({{"wire", scene.curves[at(contact.wire)]->name},
-                   {"vessel", scene.curves[at(contact.vessel)]->name},
+                   {"vessel", contact.vessel < 0 ? Json() : Json(scene.curves[at(contact.vessel)]->name)},
                    {"row", contact.row},
                    {"wire_edge", static_cast<int>(edge)},
                    {"t", contact.wire_coordinate - edge},

@@ -114,11 +114,13 @@ CurveRecord read_curve(Session& session, const Solution& solution, const Curve& 
 Status read_contacts(Session& session, const Solution& solution, Readings& out) {
   for (const RowOrigin& group : session.assembly->row_origins()) {
     if (group.constraint < 0) continue;
+    const ConstraintUse& use = session.scene->constraints[at(group.constraint)];
     std::vector<RowReport> reports;
     Status status = session.assembly->report(solution.q, group.constraint, reports);
     if (!status.ok()) return status;
     for (std::size_t r = 0; r < reports.size(); ++r) {
       const RowReport& report = reports[r];
+      if (report.wire_curve < 0) continue;  // not a place of a curve
       ContactRecord contact;
       contact.wire = report.wire_curve;
       contact.vessel = report.vessel_curve;
@@ -129,10 +131,15 @@ Status read_contacts(Session& session, const Solution& solution, Readings& out) 
         return arc[at(i)] + (coordinate - i) * (arc[at(i + 1)] - arc[at(i)]);
       };
       contact.wire_arc = along(out.curves[at(report.wire_curve)].arc, report.wire_coordinate);
-      contact.vessel_arc = along(session.scene->curves[at(report.vessel_curve)]->arc, report.vessel_coordinate);
+      if (report.vessel_curve >= 0) {
+        contact.vessel_arc = along(session.scene->curves[at(report.vessel_curve)]->arc, report.vessel_coordinate);
+      }
       contact.gap = report.gap;
-      contact.force = solution.multipliers[at(group.first) + r];
-      std::copy_n(report.direction, 3, contact.direction);
+      const bool bilateral = use.rows.lower[r] == use.rows.upper[r];
+      const double force = solution.multipliers[at(group.first) + r] * report.force_per_multiplier;
+      contact.force = bilateral ? std::fabs(force) : force;
+      for (int k = 0; k < 3; ++k)
+        contact.direction[k] = bilateral && force < 0.0 ? -report.direction[k] : report.direction[k];
       out.contacts.push_back(contact);
     }
   }
@@ -243,9 +250,13 @@ void read_wires(Session& session, const Solution& solution, const Readings& read
     Status status = session.assembly->site_stress(solution.q, curve->view.index, Site::length, tension);
     if (!status.ok() || tension.empty()) continue;  // only a wire that slides has its tension as an energy
     double peak = 0.0, integral = 0.0;
+    std::vector<char> touching(at(curve->view.nodes), 0);
     for (const ContactRecord& contact : readings.contacts) {
       if (contact.wire != curve->view.index || contact.force <= touching_force) continue;
-      const int node = static_cast<int>(std::lround(contact.wire_coordinate));
+      touching[at(static_cast<int>(std::lround(contact.wire_coordinate)))] = 1;
+    }
+    for (int node = 0; node < curve->view.nodes; ++node) {
+      if (touching[at(node)] == 0) continue;
       const double before = node > 0 ? record.arc[at(node)] - record.arc[at(node - 1)] : 0.0;
       const double after = node + 1 < curve->view.nodes ? record.arc[at(node + 1)] - record.arc[at(node)] : 0.0;
       const double line_load = std::fabs(tension[0] * record.curvature[at(node)]);

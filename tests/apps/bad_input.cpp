@@ -129,9 +129,10 @@ TEST_CASE("an unknown reference in 'on'") {
             ": unknown curve 'iliak' in 'on' of energy 'anchoring'; expected one of: iliac, lunderquist; "
             "did you mean 'iliac'?\n");
   const std::string constraint = edited(planar(), "[\"lunderquist\", \"iliac\"]", "[\"lunderqvist\", \"iliac\"]");
-  CHECK(refusal(constraint) == position("bad.toml", constraint, "\"lunderqvist\"") +
-                                   ": unknown wire 'lunderqvist' in 'on' of constraint 'lumen'; expected one of: "
-                                   "lunderquist; did you mean 'lunderquist'?\n");
+  CHECK(refusal(constraint) ==
+        position("bad.toml", constraint, "\"lunderqvist\"") +
+            ": unknown curve 'lunderqvist' in 'on' of constraint 'lumen'; expected one of: iliac, "
+            "lunderquist; did you mean 'lunderquist'?\n");
 }
 
 TEST_CASE("every error of a points file at once") {
@@ -180,11 +181,12 @@ TEST_CASE("a wire as wide as the lumen, and where") {
       planar(), "\"6 mm\"",
       "{ table = [[\"0 mm\", \"6 mm\"], [\"50 mm\", \"0.4 mm\"], [\"60 mm\", \"0.4 mm\"], [\"100 mm\", \"6 mm\"]] }");
   const std::string error = refusal(text);
-  CHECK(error ==
-        position("bad.toml", text, "\"0.4445 mm\"") +
-            ": wire 'lunderquist' (radius 0.4445 mm) is as wide as the lumen of 'iliac' or wider, by 0.0445 mm at "
-            "s = 58.64 mm; expected a wire radius smaller than the lumen's everywhere; reduce the wire's radius, or "
-            "use a constraint without clearance\n");
+  CHECK(
+      error ==
+      position("bad.toml", text, "[[constraint]]") +
+          ": constraint 'lumen': wire 'lunderquist' (radius 0.4445 mm) is as wide as the lumen of 'iliac' or wider, by "
+          "0.0445 mm at s = 58.64 mm; reduce the wire's radius, or use type = \"concentric\", which has no "
+          "clearance\n");
 }
 
 TEST_CASE("a planar scene with data in space") {

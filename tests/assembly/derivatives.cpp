@@ -67,6 +67,20 @@ std::vector<NamedScene> scenes() {
   out.back().scene.vessel_frames = out.back().scene.wire_frames = true;
   out.back().scene.vessel_ends = R"(["clamped", "held-edge"])";
   out.back().scene.wire_ends = R"(["held-edge", "clamped"])";
+  for (const bool space : {false, true}) {
+    const std::string where = space ? "space: " : "plane: ";
+    const SmallScene scene = space ? spatial("nodes", "edge-frames") : planar("edge-frames", "nodes");
+    for (const char* type : {"segment-wise-contact", "same-index-contact", "concentric"}) {
+      out.push_back({where + type, scene});
+      out.back().scene.contact_type = type;
+      out.back().scene.wire_nodes = std::string(type) == "same-index-contact" ? 8 : 7;
+      out.back().scene.wire_ends = R"(["clamped", "free"])";
+    }
+    out.push_back({where + "three rows per segment", scene});
+    out.back().scene.contact = "rows-per-segment = 3";
+    out.push_back({where + "outside", scene});
+    out.back().scene.contact = "side = \"outside\"";
+  }
   out.push_back({"space: frames around nodes with a free tip", spatial("edge-frames", "nodes")});
   out.back().scene.vessel_frames = true;
   out.back().scene.wire_ends = R"(["clamped", "free"])";

@@ -51,9 +51,8 @@ std::string SmallScene::text() const {
   }
   if (tension) out += "[[energy]]\ntype = \"axial-tension\"\non = \"wire\"\ntension = \"3 N\"\n";
   if (!contact.empty()) {
-    out +=
-        "[[constraint]]\nname = \"lumen\"\ntype = \"node-wise-contact\"\non = [\"wire\", \"vessel\"]\nwindow = 20\n" +
-        contact + "\n";
+    out += "[[constraint]]\nname = \"lumen\"\ntype = \"" + contact_type +
+           "\"\non = [\"wire\", \"vessel\"]\nwindow = 20\n" + contact + "\n";
   }
   return out + "[solver]\ntype = \"ipopt\"\n";
 }

@@ -19,6 +19,7 @@ struct SmallScene {
   int wire_nodes = 7;  ///< of a vessel with 8
   std::string vessel_kinematics = "edge-frames", wire_kinematics = "edge-frames";
   std::string vessel_ends = R"(["pinned", "pinned"])", wire_ends = R"(["pinned", "pinned"])";
+  std::string contact_type = "node-wise-contact";
   std::string contact = R"(centerline = "spline")";  ///< keys of the constraint; "": no constraint
   bool vessel_frames = false, wire_frames = false;   ///< torsional stiffness, in space
   bool tension = true;

@@ -120,8 +120,8 @@ TEST_CASE("keys that a table must have") {
               "scene.toml:7:1: energy 'energy' has no 'on'; expected the curve that it acts on; add on = \"<curve>\"",
               "scene.toml:7:1: energy 'energy' has no 'type'; expected one of: anchoring, axial-tension, point-load, "
               "vessel-strain, wire-bending; add type = \"<energy>\"",
-              "scene.toml:8:1: constraint 'node-wise-contact' has no 'on'; expected two curves: [wire, vessel]; add on "
-              "= [\"<wire>\", \"<vessel>\"]"});
+              "scene.toml:8:1: constraint 'node-wise-contact' has no 'on'; expected a list of curves, for contact "
+              "[wire, vessel]; add on = [\"<wire>\", \"<vessel>\"]"});
 }
 
 TEST_CASE("what belongs to a later version is said to") {
@@ -216,11 +216,16 @@ TEST_CASE("references to curves") {
   CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[\"v\", \"w\"]")) ==
         Texts{"scene.toml:27:6: 'on' of constraint 'lumen' has the vessel first; expected [wire, vessel]; write on = "
               "[\"w\", \"v\"]"});
-  CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[\"v\", \"v\"]")) ==
-        Texts{"scene.toml:27:7: unknown wire 'v' in 'on' of constraint 'lumen'; expected one of: w; 'v' is a vessel"});
-  CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[\"w\"]")) ==
-        Texts{"scene.toml:27:6: 'on' of constraint 'lumen' has 1 entries; expected two curves: [wire, vessel]; write "
-              "on = [\"<wire>\", \"<vessel>\"]"});
+  CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[\"w\", \"u\"]")) ==
+        Texts{"scene.toml:27:12: unknown curve 'u' in 'on' of constraint 'lumen'; expected one of: v, w; name one that "
+              "the file has"});
+  CHECK(bench.errors(scene_with("[\"w\", \"v\"]", "[]")) ==
+        Texts{"scene.toml:27:6: 'on' of constraint 'lumen' is empty; expected a list of curves, for contact [wire, "
+              "vessel]; write on = [\"<wire>\", \"<vessel>\"]"});
+  CHECK(
+      bench.errors(scene_with("[\"w\", \"v\"]", "\"w\"")) ==
+      Texts{"scene.toml:27:6: 'on' of constraint 'lumen' is text \"w\"; expected a list of curves, for contact [wire, "
+            "vessel]; write on = [\"<wire>\", \"<vessel>\"]"});
 }
 
 TEST_CASE("names that paths could not address") {

@@ -176,7 +176,7 @@ TEST_CASE("a wire wider than the lumen is refused where that is worst") {
   CHECK(std::fabs(place - 12.0) < 0.8);
   CHECK(excess > 0.0);
   CHECK(excess <= 0.15);
-  CHECK(contains(text, "expected a wire radius smaller than the lumen's everywhere"));
+  CHECK(contains(text, "reduce the wire's radius, or use type = \"concentric\", which has no clearance"));
 }
 
 TEST_CASE("'measured-from' is refused where there is no tip or sheath") {

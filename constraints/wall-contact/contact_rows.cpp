@@ -1,0 +1,118 @@
+#include "constraints/wall-contact/contact_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bowstring::wall_contact {
+
+namespace {
+
+constexpr int most_places = 2 + contact::max_stencil;
+
+/// Inside h is the gap itself, outside its opposite with the wire's radius added to the tube's.
+double sign(const Wall& wall) noexcept { return wall.outside ? -1.0 : 1.0; }
+
+/// Where a derivative over (wire nodes, stencil) stands among those over the row's places.
+struct Placement {
+  int wire, shift;
+  int operator()(int k) const noexcept { return k < wire ? k : k + shift; }
+};
+
+Placement placement(const Row& row, contact::NodeRange nodes, int dimension) noexcept {
+  return {row.nodes * dimension, (nodes.first - row.covers.first) * dimension};
+}
+
+}  // namespace
+
+RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept {
+  RowPoint point;
+  const int dimension = wall.centerline.dimension;
+  point.wire.nodes = row.nodes;
+  point.wire.points = wire + row.node * dimension;
+  point.wire.t = row.t;
+  for (int k = 0; k < 2; ++k) point.wire.radius[k] = sign(wall) * row.radius[k];
+  if (row.extremal) {
+    const contact::ChordExtremum extremum =
+        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), row.window, row.sigma);
+    point.wire.t = extremum.t;
+    point.wire.extremal = extremum.interior;
+    point.closest = extremum.closest;
+    point.lesser_end = extremum.lesser_end;
+  } else {
+    double x[3] = {};
+    point.wire.position(dimension, x);
+    const contact::GapShape shape = point.wire.shape(wall.form);
+    point.closest = row.searches ? contact::closest(wall.centerline, x, shape, row.window, row.sigma)
+                                 : contact::gap_at(wall.centerline, x, shape,
+                                                   contact::coordinate(row.sigma, wall.centerline.nodes));
+  }
+  point.gap = sign(wall) * point.closest.gap;
+  return point;
+}
+
+void write_gradient(const Row& row, const Wall& wall, const RowPoint& point, double* out) noexcept {
+  const int dimension = wall.centerline.dimension;
+  double local[most_places * 3];
+  const contact::NodeRange nodes =
+      contact::gap_derivatives(wall.centerline, point.wire, wall.form, point.closest, local, 0.0, nullptr);
+  const Placement place = placement(row, nodes, dimension);
+  std::fill(out, out + row.places() * dimension, 0.0);
+  for (int k = 0; k < (row.nodes + nodes.count) * dimension; ++k) out[place(k)] = sign(wall) * local[k];
+}
+
+void write_hessian(const Row& row, const Wall& wall, const RowPoint& point, double weight, double* out) noexcept {
+  const int dimension = wall.centerline.dimension;
+  std::fill(out, out + packed_size(row.places() * dimension), 0.0);
+  if (weight == 0.0) return;
+  double local[packed_size(most_places * 3)];
+  const contact::NodeRange nodes = contact::gap_derivatives(wall.centerline, point.wire, wall.form, point.closest,
+                                                            nullptr, sign(wall) * weight, local);
+  const Placement place = placement(row, nodes, dimension);
+  const int order = (row.nodes + nodes.count) * dimension;
+  for (int a = 0, k = 0; a < order; ++a) {
+    for (int b = 0; b <= a; ++b, ++k) out[packed_index(place(a), place(b))] = local[k];
+  }
+}
+
+void refer_to(Row& row, const Wall& wall, const double* wire) noexcept {
+  const RowPoint point = locate(row, wall, wire);
+  const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
+  const int dimension = wall.centerline.dimension;
+  double x[3] = {};
+  point.wire.position(dimension, x);
+  row.t = point.wire.t;
+  row.interior = point.wire.extremal;
+  row.sigma = point.closest.at.sigma();
+  row.stencil = contact::stencil(wall.centerline.interpolation, point.closest.at, wall.centerline.nodes);
+  row.gap = point.gap;
+  row.lesser_end = point.lesser_end;
+  row.clearance = point.closest.clearance;
+  const double speed = std::hypot(q.slope[0], q.slope[1], q.slope[2]);
+  for (int k = 0; k < dimension; ++k) {
+    row.offset[k] = x[k] - q.position[k];
+    row.tangent[k] = q.slope[k] / speed;
+  }
+}
+
+double travelled(const Row& row, int dimension, const double* wire, const double* vessel) noexcept {
+  double motion[3] = {};
+  double along = 0.0;
+  for (int k = 0; k < dimension; ++k) {
+    const double* p = wire + row.node * dimension + k;
+    const double x = row.nodes == 1 ? p[0] : (1.0 - row.t) * p[0] + row.t * p[dimension];
+    double q = 0.0;
+    for (int j = 0; j < row.stencil.nodes.count; ++j) {
+      q += row.stencil.value[j] * vessel[(row.stencil.nodes.first + j) * dimension + k];
+    }
+    motion[k] = x - q - row.offset[k];
+    along += motion[k] * row.tangent[k];
+  }
+  double squared = 0.0;
+  for (int k = 0; k < dimension; ++k) {
+    const double across = motion[k] - along * row.tangent[k];
+    squared += across * across;
+  }
+  return std::sqrt(squared) / row.clearance;
+}
+
+}  // namespace bowstring::wall_contact

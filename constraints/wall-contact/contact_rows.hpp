@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/gap.hpp"
+#include "core/interfaces/constraint.hpp"
+
+namespace bowstring::wall_contact {
+
+/// Where along the wire rows stand.
+enum class Discretisation : int {
+  same_index,    ///< at each node, against the vessel's node of the same number
+  node_wise,     ///< at each node, or at more fixed stations per segment, against the closest point
+  segment_wise,  ///< one per segment, wherever along its chord the gap is largest
+};
+
+/// The wall as a row sees it.
+struct Wall {
+  contact::Centerline centerline;
+  contact::GapForm form = contact::GapForm::squared;
+  bool outside = false;  ///< the wire stays outside of the tube instead of inside
+};
+
+/// One point of the wire that stays on its side of the wall.
+struct Row {
+  int node = 0, nodes = 1;    ///< reads `nodes` wire nodes from `node` on
+  double t = 0.0;             ///< x = (1 − t) p_node + t p_{node+1}, at the accepted state
+  bool extremal = false;      ///< t is searched for: where the gap is largest
+  bool interior = false;      ///< and lies between the nodes, at the accepted state
+  double lesser_end = 0.0;    ///< gap at the node of a chord where it is smaller, mm
+  bool searches = true;       ///< σ is searched for; otherwise it is given
+  double radius[2] = {};      ///< of the wire at its nodes, mm
+  contact::Window window;     ///< of σ
+  contact::NodeRange covers;  ///< vessel nodes within it
+  double sigma = 0.0;         ///< at the accepted state, and what follows
+  contact::Stencil stencil;   ///< of the vessel there
+  double offset[3] = {};      ///< x − q
+  double tangent[3] = {};     ///< unit, of the vessel
+  double gap = 0.0, clearance = 1.0;
+
+  int places() const noexcept { return nodes + covers.count; }
+};
+
+/// A row at some state.
+struct RowPoint {
+  contact::WirePoint wire;
+  contact::ClosestPoint closest;
+  double gap = 0.0;         ///< ≤ 0 on the right side, mm
+  double lesser_end = 0.0;  ///< gap at the node of a chord where it is smaller, mm
+};
+
+/// `wire`: all its node positions. `window_edge` in the closest point where the row needs other vessel nodes.
+RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept;
+
+/// ∂(gap) over the row's places, wire nodes first.
+void write_gradient(const Row& row, const Wall& wall, const RowPoint& point, double* out) noexcept;
+/// weight·∂²(gap), packed.
+void write_hessian(const Row& row, const Wall& wall, const RowPoint& point, double weight, double* out) noexcept;
+
+/// Makes the state the row's accepted one.
+void refer_to(Row& row, const Wall& wall, const double* wire) noexcept;
+
+/// How far the row's point has moved since then, relative to its wall point and across the vessel, as a fraction of the
+/// clearance. `vessel`: all its node positions.
+double travelled(const Row& row, int dimension, const double* wire, const double* vessel) noexcept;
+
+}  // namespace bowstring::wall_contact

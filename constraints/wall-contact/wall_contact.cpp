@@ -1,0 +1,471 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+#include "constraints/wall-contact/contact_rows.hpp"
+#include "core/contact/binding.hpp"
+#include "plugins/sdk/plugin.hpp"
+
+namespace bowstring::wall_contact {
+namespace {
+
+constexpr ParameterDeclaration centerline_key{.key = "centerline",
+                                              .type = ParameterType::choice,
+                                              .unit = "",
+                                              .default_text = "\"spline\"",
+                                              .description = "how the wall runs between vessel nodes",
+                                              .choices = "spline|polyline"};
+constexpr ParameterDeclaration gap_key{.key = "gap",
+                                       .type = ParameterType::choice,
+                                       .unit = "",
+                                       .default_text = "\"squared\"",
+                                       .description = "form of the gap function; all have the same zero set",
+                                       .choices = "squared|distance|smooth-distance"};
+constexpr ParameterDeclaration side_key{.key = "side",
+                                        .type = ParameterType::choice,
+                                        .unit = "",
+                                        .default_text = "\"inside\"",
+                                        .description = "the side of the wall that the wire stays on",
+                                        .choices = "inside|outside"};
+constexpr ParameterDeclaration rows_key{
+    .key = "rows-per-segment",
+    .type = ParameterType::scalar,
+    .unit = "",
+    .default_text = "1",
+    .description =
+        "rows per wire segment, evenly spaced; \"auto\": as many as keep rows closer than 0.65 of the "
+        "smallest clearance; without effect with segment-wise-contact, which finds the place itself",
+    .lower = 1.0,
+    .choices = "auto"};
+constexpr ParameterDeclaration window_key{
+    .key = "window",
+    .type = ParameterType::scalar,
+    .unit = "|mm",
+    .default_text = "",
+    .description =
+        "vessel segments (a number) or length (with a unit) that a row covers on each side of its closest "
+        "point; default what the solver asks for; without effect with same-index-contact, which searches none",
+    .lower = 0.0,
+    .lower_exclusive = true};
+constexpr ParameterDeclaration schema[] = {centerline_key, gap_key, side_key, rows_key, window_key};
+
+constexpr int window_in_length = 1;
+constexpr double rebind_margin = 0.2;       // of the window's half width
+constexpr double automatic_spacing = 0.65;  // of the smallest clearance
+constexpr double touching = 0.1;            // of the clearance: a node closer to its wall may be about to carry force
+constexpr int most_changes = 5;             // of one segment's row: it then stays as it is
+constexpr double covered = 1e-9;            // mm: what a chord may exceed its nodes by before it needs a row of its own
+
+contact::GapForm gap_form_of(const std::string& name) {
+  if (name == "distance") return contact::GapForm::distance;
+  if (name == "smooth-distance") return contact::GapForm::smooth_distance;
+  return contact::GapForm::squared;
+}
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// The row of one wire segment under segment-wise contact: where the gap is largest along its chord; or, where both its
+/// nodes are about to touch and the wall bends away between them, at the node that `node_row_of` gives it: the largest
+/// gap would jump from one node to the other, and the rows of neighbours would coincide.
+struct SegmentState {
+  bool by_node = false;
+  int changes = 0;
+};
+
+/// A wire on its side of a vessel's wall. Preprint eqs. (9) and (11), with the gap of a tube whose radius varies.
+template <Discretisation discretisation>
+class WallContact final : public Constraint {
+ public:
+  explicit WallContact(const ParameterSet& parameters)
+      : interpolation_(parameters.text("centerline") == "polyline" ? contact::Interpolation::polyline
+                                                                   : contact::Interpolation::spline),
+        form_(gap_form_of(parameters.text("gap"))),
+        outside_(parameters.text("side") == "outside") {
+    const ParameterValue& rows = parameters.at("rows-per-segment");
+    rows_per_segment_ = rows.text.empty() ? rows.number : 0.0;
+    if (rows_per_segment_ != std::floor(rows_per_segment_)) {
+      throw StatusError(Code::invalid_input, "'rows-per-segment' is " + number(rows_per_segment_) +
+                                                 "; expected a whole number, or \"auto\"");
+    }
+    if (!parameters.has("window")) return;
+    window_ = parameters.scalar("window");
+    window_is_length_ = parameters.at("window").unit_alternative == window_in_length;
+  }
+
+  Status declare(const ConstraintScene& scene, RowDeclaration& out) noexcept override {
+    return guard([&] {
+      check(scene);
+      wire_ = scene.on[0];
+      vessel_ = scene.on[1];
+      dimension_ = scene.dimension;
+      radius_.assign(scene.radius[1], scene.radius[1] + vessel_.nodes);
+      wire_radius_.assign(static_cast<std::size_t>(wire_.nodes), 0.0);
+      if (scene.radius[0] != nullptr) wire_radius_.assign(scene.radius[0], scene.radius[0] + wire_.nodes);
+      set_window(scene);
+      const std::vector<double> sigma = first_places(scene);
+      if (!outside_) check_width(sigma);
+      make_rows(sigma);
+      select();
+      describe(out);
+      out.inside_lumen = !outside_;
+      warn(out);
+      if (discretisation == Discretisation::segment_wise) {
+        out.without_effect.push_back({"rows-per-segment", "segment-wise-contact finds the place of the largest gap"});
+      }
+      if (discretisation == Discretisation::same_index) {
+        out.without_effect.push_back({"window", "same-index-contact searches no closest point"});
+      }
+    });
+  }
+
+  Status evaluate(const RowEvaluation& evaluation) const noexcept override {
+    const Wall wall = wall_at(*evaluation.at);
+    const double* wire = evaluation.at->table(wire_.index, Site::node);
+    double* jacobian = evaluation.jacobian.data();
+    double* hessian = evaluation.hessian.data();
+    for (std::size_t r = 0; r < active_.size(); ++r) {
+      const Row& row = rows_[active_[r]];
+      const RowPoint point = locate(row, wall, wire);
+      if (point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
+      if (!evaluation.residual.empty()) evaluation.residual[r] = point.gap;
+      const int numbers = row.places() * dimension_;
+      if (jacobian != nullptr) {
+        write_gradient(row, wall, point, jacobian);
+        jacobian += numbers;
+      }
+      if (hessian != nullptr) {
+        write_hessian(row, wall, point, evaluation.weight[r], hessian);
+        hessian += packed_size(numbers);
+      }
+    }
+    return {};
+  }
+
+  Status accept(const PlaceTables& at) noexcept override {
+    const Wall wall = wall_at(at);
+    const double* wire = at.table(wire_.index, Site::node);
+    for (Row& row : rows_) refer_to(row, wall, wire);
+    return {};
+  }
+
+  Travel travel(const PlaceTables& at) const noexcept override {
+    const double* wire = at.table(wire_.index, Site::node);
+    const double* vessel = at.table(vessel_.index, Site::node);
+    Travel largest;
+    for (std::size_t r = 0; r < active_.size(); ++r) {
+      const double fraction = travelled(rows_[active_[r]], dimension_, wire, vessel);
+      if (fraction > largest.fraction_of_clearance) largest = {fraction, static_cast<int>(r)};
+    }
+    return largest;
+  }
+
+  bool rebind_due() const noexcept override {
+    const bool near_edge = std::any_of(active_.begin(), active_.end(), [&](std::size_t r) {
+      const Row& row = rows_[r];
+      if (!row.searches) return false;
+      const double margin = rebind_margin * 0.5 * (row.window.high - row.window.low);
+      const bool low = row.window.low > 0.0 && row.sigma < row.window.low + margin;
+      const bool high = row.window.high < vessel_.nodes - 1 && row.sigma > row.window.high - margin;
+      return low || high;
+    });
+    if (near_edge) return true;
+    for (int segment = 0; segment < static_cast<int>(segments_state_.size()); ++segment) {
+      if (changes(segment)) return true;
+    }
+    return false;
+  }
+
+  Status rebind(RowDeclaration& out) noexcept override {
+    return guard([&] {
+      for (Row& row : rows_) cover(row);
+      for (int segment = 0; segment < static_cast<int>(segments_state_.size()); ++segment) {
+        if (!changes(segment)) continue;
+        SegmentState& state = segments_state_[static_cast<std::size_t>(segment)];
+        state.by_node = !state.by_node;
+        ++state.changes;
+      }
+      select();
+      describe(out);
+    });
+  }
+
+  Status report(const PlaceTables& at, std::vector<RowReport>& out) const noexcept override {
+    return guard([&] {
+      const Wall wall = wall_at(at);
+      const double* wire = at.table(wire_.index, Site::node);
+      out.clear();
+      for (const std::size_t r : active_) {
+        const Row& row = rows_[r];
+        const RowPoint point = locate(row, wall, wire);
+        const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
+        double x[3] = {};
+        point.wire.position(dimension_, x);
+        RowReport report;
+        report.wire_curve = wire_.index;
+        report.vessel_curve = vessel_.index;
+        report.wire_coordinate = row.node + (row.nodes == 1 ? 0.0 : point.wire.t);
+        report.vessel_coordinate = point.closest.at.sigma();
+        report.gap = point.gap;
+        report.clearance = point.closest.clearance;
+        const double inward = outside_ ? -1.0 : 1.0;
+        for (int k = 0; k < dimension_ && point.closest.distance > 0.0; ++k) {
+          report.direction[k] = inward * (q.position[k] - x[k]) / point.closest.distance;
+        }
+        out.push_back(report);
+      }
+    });
+  }
+
+ private:
+  Wall wall_at(const PlaceTables& at) const noexcept { return wall_of(at.table(vessel_.index, Site::node)); }
+  Wall wall_of(const double* points) const noexcept {
+    return {{interpolation_, dimension_, vessel_.nodes, points, radius_.data()}, form_, outside_};
+  }
+
+  void check(const ConstraintScene& scene) const {
+    if (scene.on.size() != 2 || scene.on[0].kind != CurveKind::wire || scene.on[1].kind != CurveKind::vessel) {
+      throw StatusError(Code::invalid_input, "contact acts on a wire and a vessel, in that order");
+    }
+    const std::string vessel = scene.on[1].name;
+    if (scene.radius[1] == nullptr) {
+      throw StatusError(Code::invalid_input,
+                        "vessel '" + vessel + "' has no radius; give it one, or a geometry with a column radius_mm");
+    }
+    const int wire_nodes = scene.on[0].nodes, vessel_nodes = scene.on[1].nodes;
+    if (discretisation == Discretisation::same_index && wire_nodes != vessel_nodes) {
+      throw StatusError(Code::invalid_input, "same-index-contact compares nodes of the same number, but wire '" +
+                                                 std::string(scene.on[0].name) + "' has " + std::to_string(wire_nodes) +
+                                                 " nodes and vessel '" + vessel + "' " + std::to_string(vessel_nodes) +
+                                                 "; give both the same number, or use type = \"node-wise-contact\"");
+    }
+  }
+
+  /// The wire fits in everywhere, or there is no gap to speak of.
+  void check_width(const std::vector<double>& sigma) const {
+    double worst = 0.0, place = -1.0, radius = 0.0;
+    for (std::size_t i = 0; i < sigma.size(); ++i) {
+      const contact::CurveCoordinate at = contact::coordinate(sigma[i], vessel_.nodes);
+      const auto between = [&](const double* values) {
+        return (1.0 - at.u) * values[at.segment] + at.u * values[at.segment + 1];
+      };
+      const double excess = wire_radius_[i] - between(radius_.data());
+      if (excess < worst) continue;
+      worst = excess;
+      place = between(vessel_.arc);
+      radius = wire_radius_[i];
+    }
+    if (place < 0.0) return;
+    throw StatusError(Code::invalid_input,
+                      "wire '" + std::string(wire_.name) + "' (radius " + number(radius) +
+                          " mm) is as wide as the lumen of '" + vessel_.name + "' or wider, by " + number(worst) +
+                          " mm at s = " + number(place) +
+                          " mm; reduce the wire's radius, or use type = \"concentric\", which has no clearance");
+  }
+
+  void set_window(const ConstraintScene& scene) {
+    const double edge = vessel_.arc[vessel_.nodes - 1] / (vessel_.nodes - 1);
+    const auto segments = [&](double length) { return static_cast<int>(std::ceil(length / edge)); };
+    if (window_ > 0.0) {
+      segments_ = window_is_length_ ? segments(window_) : static_cast<int>(std::lround(window_));
+    } else {
+      segments_ = std::max(scene.window_segments, segments(scene.window_length));
+    }
+    segments_ = std::max(segments_, 1);
+  }
+
+  double longest_edge() const { return *std::max_element(wire_.edge_length, wire_.edge_length + wire_.nodes - 1); }
+
+  double smallest_clearance() const {
+    const double lumen = *std::min_element(radius_.begin(), radius_.end());
+    const double widest = *std::max_element(wire_radius_.begin(), wire_radius_.end());
+    return outside_ ? lumen + widest : lumen - widest;
+  }
+
+  /// Rows per segment; 0: every segment finds the place itself.
+  int stations() const {
+    if (discretisation == Discretisation::segment_wise) return 0;
+    if (rows_per_segment_ > 0.0) return static_cast<int>(rows_per_segment_);
+    return std::max(1, static_cast<int>(std::ceil(longest_edge() / (automatic_spacing * smallest_clearance()))));
+  }
+
+  /// Rows at every place that may carry one, in order along the wire, each segment's after its first node's.
+  void make_rows(const std::vector<double>& sigma) {
+    const int per_segment = stations();
+    rows_.clear();
+    node_row_.assign(static_cast<std::size_t>(wire_.nodes), -1);
+    chord_row_.assign(static_cast<std::size_t>(wire_.nodes - 1), -1);
+    segments_state_.clear();
+    for (int i = 0; i < wire_.nodes; ++i) {
+      if (!contact::position_held(wire_, i)) {
+        node_row_[static_cast<std::size_t>(i)] = static_cast<int>(rows_.size());
+        add_row(i, 1, 0.0, sigma);
+      }
+      if (i == wire_.nodes - 1 || (contact::position_held(wire_, i) && contact::position_held(wire_, i + 1))) continue;
+      for (int k = 1; k < per_segment; ++k) add_row(i, 2, static_cast<double>(k) / per_segment, sigma);
+      if (per_segment > 0) continue;
+      chord_row_[static_cast<std::size_t>(i)] = static_cast<int>(rows_.size());
+      add_row(i, 2, 0.5, sigma);
+    }
+    if (discretisation == Discretisation::segment_wise) segments_state_.resize(chord_row_.size());
+  }
+
+  void add_row(int node, int nodes, double t, const std::vector<double>& sigma) {
+    const Wall wall = wall_of(vessel_.start);
+    const auto first = static_cast<std::size_t>(node);
+    Row row;
+    row.node = node;
+    row.nodes = nodes;
+    row.t = t;
+    row.extremal = nodes == 2 && discretisation == Discretisation::segment_wise;
+    row.searches = discretisation != Discretisation::same_index;
+    row.radius[0] = wire_radius_[first];
+    row.radius[1] = nodes == 2 ? wire_radius_[first + 1] : row.radius[0];
+    row.sigma = nodes == 1 ? sigma[first] : (1.0 - t) * sigma[first] + t * sigma[first + 1];
+    cover(row);
+    refer_to(row, wall, wire_.start);
+    cover(row);
+    rows_.push_back(row);
+  }
+
+  std::vector<double> first_places(const ConstraintScene& scene) const {
+    if (discretisation != Discretisation::same_index) {
+      return contact::first_places(scene, wall_of(vessel_.start).centerline);
+    }
+    std::vector<double> sigma;
+    for (int i = 0; i < wire_.nodes; ++i) sigma.push_back(i);
+    return sigma;
+  }
+
+  void cover(Row& row) const {
+    if (row.searches) {
+      row.window = contact::window_around(row.sigma, segments_, vessel_.nodes);
+    } else {
+      const int segment = contact::coordinate(row.sigma, vessel_.nodes).segment;
+      row.window = {static_cast<double>(segment), segment + 1.0};
+    }
+    row.covers = contact::window_nodes(interpolation_, row.window, vessel_.nodes);
+  }
+
+  bool first_end_leads() const { return node_row_.back() < 0 && node_row_.front() >= 0; }
+
+  /// The node that carries the row of a segment by node: its last one, so that in a run of such segments every node has
+  /// one row and the run's first node is held by the chord before it. Counted from the other end where that one alone
+  /// is free. −1 where the node is held.
+  int node_row_of(int segment) const {
+    return node_row_[static_cast<std::size_t>(first_end_leads() ? segment : segment + 1)];
+  }
+
+  /// Whether the accepted state asks for the other row of a segment under segment-wise contact.
+  bool changes(int segment) const {
+    const SegmentState& state = segments_state_[static_cast<std::size_t>(segment)];
+    const int index = chord_row_[static_cast<std::size_t>(segment)];
+    if (index < 0 || state.changes == most_changes || node_row_of(segment) < 0) return false;
+    const Row& chord = rows_[static_cast<std::size_t>(index)];
+    if (!state.by_node) return !chord.interior && chord.lesser_end > -touching * chord.clearance;
+    return chord.interior && chord.gap > covered;
+  }
+
+  /// The rows that stand in the problem: their number never changes. Under segment-wise contact one per segment, and
+  /// one at the first node where both ends are free.
+  void select() {
+    active_.clear();
+    if (discretisation != Discretisation::segment_wise) {
+      for (std::size_t r = 0; r < rows_.size(); ++r) active_.push_back(r);
+      return;
+    }
+    if (node_row_.front() >= 0 && node_row_.back() >= 0) active_.push_back(static_cast<std::size_t>(node_row_.front()));
+    for (int i = 0; i < wire_.nodes - 1; ++i) {
+      const int chord = chord_row_[static_cast<std::size_t>(i)];
+      if (chord < 0) continue;
+      const bool by_node = segments_state_[static_cast<std::size_t>(i)].by_node;
+      active_.push_back(static_cast<std::size_t>(by_node ? node_row_of(i) : chord));
+    }
+  }
+
+  void describe(RowDeclaration& out) const {
+    out.rows = static_cast<int>(active_.size());
+    out.place_begin.assign(1, 0);
+    out.places.clear();
+    for (const std::size_t r : active_) {
+      const Row& row = rows_[r];
+      for (int k = 0; k < row.nodes; ++k) out.places.push_back({wire_.index, Site::node, row.node + k});
+      for (int k = 0; k < row.covers.count; ++k) {
+        out.places.push_back({vessel_.index, Site::node, row.covers.first + k});
+      }
+      out.place_begin.push_back(static_cast<int>(out.places.size()));
+    }
+    out.lower.assign(active_.size(), -std::numeric_limits<double>::infinity());
+    out.upper.assign(active_.size(), 0.0);
+  }
+
+  void warn(RowDeclaration& out) const {
+    const std::string pair = "contact of '" + std::string(wire_.name) + "' with '" + vessel_.name + "': ";
+    const int per_segment = stations();
+    const double spacing = per_segment > 0 ? longest_edge() / per_segment : 0.0;
+    const double clearance = smallest_clearance();
+    if (spacing > clearance) {
+      out.warnings.push_back(pair + "rows are up to " + number(spacing) +
+                             " mm apart, farther than the smallest clearance (" + number(clearance) +
+                             " mm), so the wall may pass between them; use rows-per-segment = \"auto\", "
+                             "segment-wise-contact, or more wire nodes");
+    }
+    if (form_ == contact::GapForm::smooth_distance) {
+      out.warnings.push_back(pair + "the smooth distance lets the wire into the wall by up to " +
+                             number(contact::gap_smoothing) + " mm");
+    }
+    double outside = 0.0, place = -1.0;
+    for (const Row& row : rows_) {
+      const double distance = std::hypot(row.offset[0], row.offset[1], row.offset[2]);
+      const double depth = outside_ ? row.clearance - distance : distance - row.clearance;
+      if (depth <= outside) continue;
+      outside = depth;
+      place = wire_.arc[row.node] + (row.nodes == 1 ? 0.0 : row.t * wire_.edge_length[row.node]);
+    }
+    if (place >= 0.0) {
+      out.warnings.push_back("wire '" + std::string(wire_.name) + "' starts " + (outside_ ? "inside" : "outside") +
+                             " of '" + vessel_.name + "' by up to " + number(outside) + " mm, at s = " + number(place) +
+                             " mm");
+    }
+  }
+
+  contact::Interpolation interpolation_;
+  contact::GapForm form_;
+  bool outside_;
+  double rows_per_segment_ = 1.0;  // 0: as many as keep them close
+  double window_ = 0.0;
+  bool window_is_length_ = false;
+  int segments_ = 2;
+  CurveView wire_, vessel_;
+  int dimension_ = 3;
+  std::vector<double> radius_, wire_radius_;
+  std::vector<Row> rows_;
+  std::vector<int> node_row_, chord_row_;     // per wire node and segment: its row, −1 where there is none
+  std::vector<SegmentState> segments_state_;  // per segment; under segment-wise contact only
+  std::vector<std::size_t> active_;           // rows that stand in the problem
+};
+
+}  // namespace
+}  // namespace bowstring::wall_contact
+
+BOWSTRING_PLUGIN(
+    bowstring::component<bowstring::Constraint,
+                         bowstring::wall_contact::WallContact<bowstring::wall_contact::Discretisation::node_wise>>(
+        bowstring::Kind::constraint, "node-wise-contact",
+        "The wire stays in the lumen at its nodes: one closest-point gap per node, or more per segment",
+        bowstring::wall_contact::schema),
+    bowstring::component<bowstring::Constraint,
+                         bowstring::wall_contact::WallContact<bowstring::wall_contact::Discretisation::segment_wise>>(
+        bowstring::Kind::constraint, "segment-wise-contact",
+        "The wire's straight segments stay in the lumen: one row per segment, where its gap is largest",
+        bowstring::wall_contact::schema),
+    bowstring::component<bowstring::Constraint,
+                         bowstring::wall_contact::WallContact<bowstring::wall_contact::Discretisation::same_index>>(
+        bowstring::Kind::constraint, "same-index-contact",
+        "Each wire node stays near the vessel node of the same number, within the lumen radius",
+        bowstring::wall_contact::schema))

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include "core/contact/centerline.hpp"
+#include "core/interfaces/constraint.hpp"
+
+namespace bowstring::contact {
+
+/// σ on the second curve of `scene.on` that each node of the first one is first bound to: at equal arc length where it
+/// starts along that curve, otherwise the globally nearest place, monotone along it.
+std::vector<double> first_places(const ConstraintScene& scene, const Centerline& centerline);
+
+/// A node whose position is wholly held, so that no row on it could do anything.
+bool position_held(const CurveView& curve, int node) noexcept;
+
+}  // namespace bowstring::contact
