@@ -105,6 +105,35 @@ std::vector<double> node_numbers(const Json& table, const char* key, std::size_t
   return out;
 }
 
+/// Rows of `count` numbers, one per node; where the list is left out or empty, rows that are not numbers.
+std::vector<std::vector<double>> node_rows(const Json& table, const char* key, std::size_t count, std::size_t nodes,
+                                           const std::string& where) {
+  const Json& rows = list(table, key, where + ".");
+  if (rows.empty()) return {nodes, std::vector<double>(count, not_a_number)};
+  expect_nodes(rows.size(), nodes, where + "." + key);
+  std::vector<std::vector<double>> out;
+  for (const Json& row : rows) {
+    const std::string place = where + "." + key + "[" + std::to_string(out.size()) + "]";
+    if (!row.is_array() || row.size() != count) {
+      refuse(place, row.is_array() ? std::to_string(row.size()) + " numbers" : found(row),
+             std::to_string(count) + " numbers");
+    }
+    out.emplace_back();
+    for (const Json& value : row) out.back().push_back(number(value, place));
+  }
+  return out;
+}
+
+std::vector<Vector3> read_moment(const Json& table, int dimension, std::size_t nodes, const std::string& where) {
+  std::vector<Vector3> out;
+  if (dimension == 2) {
+    for (const double moment : node_numbers(table, "moment_N_mm", nodes, where)) out.push_back({{0.0, 0.0, moment}});
+    return out;
+  }
+  for (const auto& row : node_rows(table, "moment_N_mm", 3, nodes, where)) out.push_back(Vector3::load(row.data()));
+  return out;
+}
+
 ResultCurve read_curve(const Json& table, int dimension, const std::string& where) {
   ResultCurve curve;
   curve.name = text(table, "name");
@@ -120,6 +149,11 @@ ResultCurve read_curve(const Json& table, int dimension, const std::string& wher
   curve.arc = node_numbers(table, "s_mm", nodes, where);
   curve.radius = node_numbers(table, "radius_mm", nodes, where);
   curve.curvature = node_numbers(table, "curvature_per_mm", nodes, where);
+  curve.twist = node_numbers(table, "twist_per_mm", nodes, where);
+  curve.moment = read_moment(table, dimension, nodes, where);
+  for (const auto& row : node_rows(table, "frames", 4, nodes, where)) {
+    curve.frames.push_back(lie::Rotation::load(row.data()));
+  }
   return curve;
 }
 
@@ -150,12 +184,24 @@ void read_curves(const Json& document, Result& out) {
   }
 }
 
+ResultContact read_contact(const Result& result, const Json& table, const std::string& where) {
+  ResultContact contact;
+  contact.wire = curve_index(result, table, "wire", where);
+  contact.arc = number(table, "s_mm", where);
+  contact.force = number(table, "force_N", where);
+  contact.edge = number(table, "wire_edge", where);
+  contact.part = number(table, "t", where);
+  contact.gap = number(table, "gap_mm", where);
+  const Json& direction = member(table, "direction");
+  contact.direction = direction.is_null() ? Vector3{{not_a_number, not_a_number, not_a_number}}
+                                          : point(direction, result.dimension, where + ".direction");
+  return contact;
+}
+
 void read_loads(const Json& document, Result& out) {
   const Json& contacts = list(document, "contacts", "");
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const std::string where = "contacts[" + std::to_string(i) + "]";
-    out.contacts.push_back({curve_index(out, contacts[i], "wire", where), number(contacts[i], "s_mm", where),
-                            number(contacts[i], "force_N", where)});
+    out.contacts.push_back(read_contact(out, contacts[i], "contacts[" + std::to_string(i) + "]"));
   }
   const Json& supports = list(document, "supports", "");
   for (std::size_t i = 0; i < supports.size(); ++i) {

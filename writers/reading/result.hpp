@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/lie/small_matrix.hpp"
+#include "core/lie/so3.hpp"
 
 namespace bowstring {
 
@@ -17,6 +17,9 @@ struct ResultCurve {
   std::vector<double> arc;         ///< State 2 arc length from the first end, mm
   std::vector<double> radius;      ///< mm
   std::vector<double> curvature;   ///< 1/mm
+  std::vector<double> twist;       ///< 1/mm
+  std::vector<Vector3> moment;     ///< N mm, in the axes of the frame: torsion, then bending; in the plane the third
+  std::vector<lie::Rotation> frames;
 
   int nodes() const noexcept { return static_cast<int>(points.size()); }
 };
@@ -25,6 +28,10 @@ struct ResultContact {
   int wire = 0;        ///< index of the curve
   double arc = 0.0;    ///< State 2 arc length along the wire, mm
   double force = 0.0;  ///< N
+  double edge = 0.0;   ///< of the wire
+  double part = 0.0;   ///< of that edge, in [0, 1]
+  double gap = 0.0;    ///< mm
+  Vector3 direction;   ///< unit, of the force on the wire
 };
 
 struct ResultSupport {
