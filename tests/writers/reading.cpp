@@ -8,7 +8,7 @@ namespace {
 
 std::string refusal(const std::string& document) {
   std::string text;
-  for (const char* writer : {"csv", "svg"}) {
+  for (const char* writer : {"csv", "svg", "vtp"}) {
     const Written result = written(writer, document);
     CHECK_FALSE(result.good);
     if (!text.empty()) CHECK(result.text == text);
@@ -39,6 +39,12 @@ TEST_CASE("writers name what a document lacks, and where") {
         "curves[0].points[1]: found 3 numbers, expected 2 numbers" + mend);
   CHECK(refusal(edited_result(good, "\"s_mm\": 70,", "\"s_mm\": \"far\",")) ==
         "contacts[1].s_mm: found \"far\", expected a number or null" + mend);
+  CHECK(refusal(edited_result(good, "[[1, 0, 0, 0], [1, 0, 0, 0],", "[[1, 0, 0, 0], [1, 0, 0],")) ==
+        "curves[0].frames[1]: found 3 numbers, expected 4 numbers" + mend);
+  CHECK(refusal(edited_result(small_result(3), "[4, 5, 6]", "5")) ==
+        "curves[0].moment_N_mm[1]: found number, expected 3 numbers" + mend);
+  CHECK(refusal(edited_result(good, "[0.6, -0.8]", "[1, 0, 0]")) ==
+        "contacts[1].direction: found 3 numbers, expected 2 numbers" + mend);
   CHECK(refusal(
             edited_result(good, "{\"on\": \"iliac\", \"end\": \"last\"}", "{\"on\": \"aorta\", \"end\": \"last\"}")) ==
         "supports[1].on: found \"aorta\", expected the name of a curve of this document" + mend);

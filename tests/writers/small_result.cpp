@@ -30,15 +30,21 @@ std::string small_result(int dimension) {
          low + ", " + moved + ", " + high + R"(],
    "reference_points": [)" +
          low + ", " + middle + ", " + high + R"(], "radius_mm": [6, 5, 6],
-   "curvature_per_mm": [0, 0.0016, 0]},
+   "curvature_per_mm": [0, 0.0016, 0], "frames": [[1, 0, 0, 0], [1, 0, 0, 0], [1, 0, 0, 0]], "moment_N_mm": )" +
+         (space ? "[[1, 2, 3], [4, 5, 6], [7, 8, 9]]" : "[3, 6, 9]") + R"(},
   {"name": "wire, stiff", "kind": "wire", "s_mm": [0, 30, 70, 100], "points": [)" +
          low + ", " + point("30, 0", "1") + ", " + point("70, 0", "1") + ", " + high + R"(], "reference_points": [)" +
          low + ", " + point("30, 0", "1") + ", " + point("70, 0", "1") + ", " + high +
          R"(], "radius_mm": [0.4, 0.4, 0.4, 0.4],
-   "curvature_per_mm": [0, 0, 0, null]}],
+   "curvature_per_mm": [0, 0, 0, null],
+   "frames": [[0, 1, 0, 0], [0, 1, 0, 0], [0, 1, 0, 0], [0, 1, 0, 0]], "twist_per_mm": null}],
  "contacts": [
-  {"wire": "wire, stiff", "vessel": "iliac", "s_mm": 30, "force_N": 1.0},
-  {"wire": "wire, stiff", "vessel": "iliac", "s_mm": 70, "force_N": 4.0}],
+  {"wire": "wire, stiff", "vessel": "iliac", "wire_edge": 1, "t": 0.0, "gap_mm": -0.125,
+   "direction": )" +
+         point("0, 1", "0") + R"(, "s_mm": 30, "force_N": 1.0},
+  {"wire": "wire, stiff", "vessel": "iliac", "wire_edge": 1, "t": 0.75, "gap_mm": 0.0,
+   "direction": )" +
+         point("0.6, -0.8", "0") + R"(, "s_mm": 70, "force_N": 4.0}],
  "supports": [{"on": "iliac", "end": "first"}, {"on": "iliac", "end": "last"}, {"on": "wire, stiff", "end": "first"}]}
 )";
 }
