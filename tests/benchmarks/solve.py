@@ -27,6 +27,11 @@ def run(bowstring, scene, overrides):
     return json.loads(process.stdout), seconds
 
 
+def offers_solver(bowstring, name):
+    process = subprocess.run([bowstring, "plugins", "--json"], check=True, stdout=subprocess.PIPE)
+    return any((plugin["kind"], plugin["name"]) == ("solver", name) for plugin in json.loads(process.stdout))
+
+
 def measure(bowstring, scene, overrides):
     results, process = zip(*(run(bowstring, scene, overrides) for _ in range(REPEATS)))
     seconds = {key: statistics.median(result["solver"]["seconds"][key] or 0.0 for result in results)
@@ -75,6 +80,10 @@ def main(bowstring, scenes):
         choice = {"vessel.iliac.kinematics": kinematics, "wire.lunderquist.kinematics": kinematics}
         variants = [(f"{kinematics}, {n} nodes", {**choice, **nodes(n)}) for n in (20, 40, 80, 160, 320)]
         family(bowstring, "planar, smooth", f"{scenes}/planar-iliac-smooth.toml", variants)
+        if offers_solver(bowstring, "nlopt"):
+            variants = [(f"{kinematics}, {n} nodes, nlopt", {**choice, **nodes(n), "solver.type": "nlopt"})
+                        for n in (20, 40)]
+            family(bowstring, "planar, smooth", f"{scenes}/planar-iliac-smooth.toml", variants)
     family(bowstring, "helix", f"{scenes}/helical-iliac-full.toml",
            [(f"{n} nodes", nodes(n)) for n in (30, 60, 120, 240)])
     family(bowstring, "tortuous", f"{scenes}/tortuous-iliac.toml", [(f"{n} nodes", nodes(n)) for n in (100, 200, 400)])
