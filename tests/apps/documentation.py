@@ -1,9 +1,9 @@
 """Runs what the documentation tells a reader to run.
 
-Every ```sh block of README.md and docs/*.md is executed with this build's `bowstring`, in a folder that holds a copy of
-scenes/; every ```toml block that is a composition is explained; the ```cpp block is compiled against an installed prefix;
-docs/parameters.md must be what the plugins declare. A block's first lines may say: '# exit N', '# file: NAME',
-'# needs …'. Prints 'N passed, N failed'."""
+Every ```sh block of README.md and docs/*.md is executed with this build's `bowstring`, in a folder that holds copies of
+scenes/ and subprojects/; every ```toml block that is a composition is explained; the ```cpp block is compiled against an
+installed prefix; docs/parameters.md must be what the plugins declare. A block's first lines may say: '# exit N',
+'# file: NAME', '# needs …'. Prints 'N passed, N failed'."""
 
 import os
 import pathlib
@@ -22,6 +22,7 @@ class Documents:
         self.folder = pathlib.Path(folder)
         self.passed = self.failed = 0
         shutil.copytree(self.source / "scenes", self.folder / "scenes")
+        shutil.copytree(self.source / "subprojects", self.folder / "subprojects", ignore=shutil.ignore_patterns("build*"))
         binaries = self.folder / "bin"
         binaries.mkdir()
         (binaries / "bowstring").symlink_to(self.bowstring)
