@@ -40,8 +40,7 @@ const char* extension_text(const CurveView& curve) {
 void explain_curve(const Curve& curve) {
   std::printf("%s '%s': %d nodes, %.6g mm, ends %s and %s; %s\n",
               curve.view.kind == CurveKind::wire ? "wire" : "vessel", curve.name.c_str(), curve.view.nodes,
-              curve.arc.back(), end_type_name(curve.end_type[0]), end_type_name(curve.end_type[1]),
-              extension_text(curve.view));
+              curve.arc.back(), curve.end_text[0].c_str(), curve.end_text[1].c_str(), extension_text(curve.view));
   std::printf("  kinematics %s%s\n", curve.kinematics_name.c_str(),
               curve.needs.material_frames ? (", with material frames because " + curve.needs.reason).c_str() : "");
   for (const FieldDeclaration& field : curve.declaration.fields) {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/contact/crossing.hpp"
+#include "core/curve/arc_length.hpp"
+
 namespace bowstring {
 
 namespace {
@@ -104,6 +107,12 @@ void judge_folds(const Assembly& assembly, double minimum_stretch, Certificate& 
   }
 }
 
+std::vector<double> node_numbers(const Curve& curve) {
+  std::vector<double> out;
+  for (int i = 0; i < curve.view.nodes; ++i) out.push_back(i);
+  return out;
+}
+
 void judge_crossings(const Assembly& assembly, Certificate& out) {
   const Scene& scene = assembly.scene();
   std::vector<std::pair<int, int>> seen;
@@ -124,7 +133,8 @@ void judge_crossings(const Assembly& assembly, Certificate& out) {
     polyline.nodes = wire.view.nodes;
     polyline.points = assembly.table(pair.first, Site::node);
     polyline.radius = wire.radius.empty() ? nullptr : wire.radius.data();
-    const std::optional<double> start = use.scene.starts_along ? std::optional<double>(0.0) : std::nullopt;
+    std::optional<double> start;
+    if (use.scene.starts_along) start = interpolate_linearly(vessel.arc, node_numbers(vessel), wire.along_begin);
     PairPenetration found;
     found.wire = pair.first;
     found.vessel = pair.second;

@@ -28,15 +28,23 @@ struct ComponentChoice {
   std::string position;  ///< of the table, "file:line:column"
 };
 
-/// `free` | `pinned` | `clamped` | `held-edge`.
-enum class EndType : int { free, pinned, clamped, held_edge };
-const char* end_type_name(EndType type) noexcept;
-
+/// One end of a curve: a type, or what is held axis by axis.
 struct EndTable {
-  EndType type = EndType::pinned;
+  std::string type = "pinned";  ///< `free` | `pinned` | `clamped` | `held-edge`; "" where axes are given instead
+  bool position_held[3] = {true, true, true};  ///< per axis
+  bool rotation_held = false;
+  bool edge_held = false;
+  bool in_end_axes = false;     ///< held axes, `move` and `turn` are in the end's axes, tangent first
   std::vector<double> tangent;  ///< dimension numbers, not yet normalised, or empty
   std::vector<double> move;     ///< dimension numbers: prescribed displacement from State 1, mm, or empty
+  /// Prescribed rotation from State 1, rad, whole turns counted: one number (in the plane, or about the tangent), or
+  /// three (a rotation vector), or empty.
+  std::vector<double> turn;
   std::string position;
+
+  bool position_free() const noexcept { return !position_held[0] && !position_held[1] && !position_held[2]; }
+  /// "pinned", "position held free, rotation held", for people.
+  std::string text(int dimension) const;
 };
 
 struct VesselTable {
@@ -59,7 +67,11 @@ struct WireTable {
   LengthRule length = LengthRule::by_ends;
   std::string length_position;  ///< where the user says so
   int nodes = 0;                ///< 0: the vessel's or the geometry's
-  ParameterValue radius;        ///< a profile
+  std::vector<double> span;     ///< where along the vessel it starts and ends in State 1, mm; empty: all of it
+  std::string span_position;
+  std::vector<double> spacing;  ///< each edge's share of the length, summing to 1; empty: uniform
+  std::string spacing_position;
+  ParameterValue radius;  ///< a profile
   ComponentChoice kinematics;
   EndTable end[2];
   std::string position;

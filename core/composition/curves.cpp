@@ -1,11 +1,13 @@
 #include "core/composition/curves.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 
 #include "core/composition/ends.hpp"
 #include "core/composition/keys.hpp"
 #include "core/composition/nearest.hpp"
+#include "core/composition/numbers.hpp"
 #include "core/composition/parameters.hpp"
 #include "core/composition/vocabulary.hpp"
 
@@ -99,6 +101,68 @@ ComponentChoice read_geometry(const Node& table, const std::string& owner, Readi
 std::optional<ParameterValue> optional_value(const ParameterSet& set, const std::string& key) {
   const ParameterValue* value = set.find(key);
   return value != nullptr ? std::optional<ParameterValue>(*value) : std::nullopt;
+}
+
+/// The numbers of a list; empty where something has been reported.
+std::vector<double> read_list(const Node& list, const std::string& subject, const NumberRules& rules,
+                              const std::string& expected, const std::string& mend, Report& report) {
+  if (!list.is_list() || list.items.empty()) {
+    report.error(list.position, subject + " " + (list.is_list() ? "is empty" : "is " + description(list)), expected,
+                 mend);
+    return {};
+  }
+  std::vector<double> out;
+  for (const Node& item : list.items) {
+    const std::optional<Number> number = read_number(item, "an entry of " + subject, rules, report);
+    if (!number) return {};
+    out.push_back(number->value);
+  }
+  return out;
+}
+
+void read_span(const Node& table, const std::string& owner, WireTable& wire, Reading& reading) {
+  const Entry* entry = table.find("span");
+  if (entry == nullptr) return;
+  const std::string subject = "'span' of " + owner, expected = "two arc lengths along the vessel, first and last",
+                    mend = "write span = [\"0 mm\", \"320 mm\"]";
+  NumberRules millimetres;
+  millimetres.units = {"mm"};
+  millimetres.lower = 0.0;
+  wire.span = read_list(entry->value, subject, millimetres, expected, mend, reading.report);
+  wire.span_position = entry->value.position.text();
+  if (wire.span.empty()) return;
+  if (wire.span.size() != 2) {
+    reading.report.error(entry->value.position, subject + " has " + std::to_string(wire.span.size()) + " entries",
+                         expected, mend);
+  } else if (!(wire.span[0] < wire.span[1])) {
+    reading.report.error(entry->value.position,
+                         subject + " goes from " + decimal(wire.span[0]) + " mm to " + decimal(wire.span[1]) + " mm",
+                         "an end beyond its beginning", "swap the two, or move them apart");
+  } else if (wire.geometry || wire.vessel.empty()) {
+    reading.report.error(
+        entry->value.position, subject + (wire.geometry ? " beside a geometry of its own" : ", which has no vessel"),
+        "it on a wire that starts along a vessel", "remove it, or let the wire start along its vessel");
+  } else {
+    return;
+  }
+  wire.span.clear();
+}
+
+void read_spacing(const Node& table, const std::string& owner, WireTable& wire, Reading& reading) {
+  const Entry* entry = table.find("spacing");
+  if (entry == nullptr) return;
+  const std::string subject = "'spacing' of " + owner;
+  NumberRules positive;
+  positive.lower = 0.0;
+  positive.lower_exclusive = true;
+  wire.spacing = read_list(entry->value, subject, positive, "a list of each edge's share of the length",
+                           "write one number per edge, summing to 1", reading.report);
+  wire.spacing_position = entry->value.position.text();
+  double sum = 0.0;
+  for (const double fraction : wire.spacing) sum += fraction;
+  if (wire.spacing.empty() || std::fabs(sum - 1.0) <= 1e-9) return;
+  reading.report.error(entry->value.position, subject + " sums to " + decimal(sum), "shares that sum to 1",
+                       "divide each by " + decimal(sum));
 }
 
 void check_radius_origin(const std::optional<ParameterValue>& radius, const Node& table, const std::string& owner,
@@ -200,8 +264,7 @@ WireTable read_wire(const Node& table, const CurveNames& names, Reading& reading
   check_name(table, name, reading.report);
 
   SchemaOwner owner = owner_of(name);
-  owner.structural = {"name", "vessel", "geometry", "ends", "kinematics"};
-  owner.later = {"span", "spacing"};
+  owner.structural = {"name", "vessel", "geometry", "ends", "kinematics", "span", "spacing"};
   Status no_fault;
   const ParameterSet values = read_parameters(table, owner, wire_schema(), no_fault, reading.report);
   wire.nodes = values.has("nodes") ? static_cast<int>(values.integer("nodes")) : 0;
@@ -224,6 +287,8 @@ WireTable read_wire(const Node& table, const CurveNames& names, Reading& reading
                          "the vessel that the wire starts along, or a geometry of its own",
                          "add vessel = \"<name>\", or geometry = { type = \"<geometry>\", … }");
   }
+  read_span(table, name, wire, reading);
+  read_spacing(table, name, wire, reading);
   wire.kinematics = read_kinematics(table, name, reading);
   read_ends(table, name, wire.end, reading);
   return wire;

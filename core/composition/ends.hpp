@@ -8,7 +8,7 @@
 
 namespace bowstring {
 
-/// Reads the `ends` of a curve: two of a type's name or a table { type, tangent }. Without `ends` both are pinned.
+/// Reads the `ends` of a curve: two of a type's name or a table. Without `ends` both are pinned.
 void read_ends(const Node& table, const std::string& owner, EndTable (&out)[2], Reading& reading);
 
 }  // namespace bowstring

@@ -109,11 +109,22 @@ Json component_json(const ComponentChoice& choice) {
   return table;
 }
 
-Json end_json(const EndTable& end) {
-  if (end.tangent.empty() && end.move.empty()) return end_type_name(end.type);
-  Json table{{"type", end_type_name(end.type)}};
+Json end_json(const EndTable& end, int dimension) {
+  if (!end.type.empty() && end.tangent.empty() && end.move.empty() && end.turn.empty()) return end.type;
+  Json table;
+  if (!end.type.empty()) {
+    table["type"] = end.type;
+  } else {
+    const auto word = [](bool held) { return held ? "held" : "free"; };
+    table["position"] = Json::array();
+    for (int k = 0; k < dimension; ++k) table["position"].push_back(word(end.position_held[k]));
+    table["rotation"] = word(end.rotation_held);
+  }
+  if (end.in_end_axes) table["axes"] = "end";
   if (!end.tangent.empty()) table["tangent"] = end.tangent;
   if (!end.move.empty()) table["move"] = end.move;
+  if (end.turn.size() == 1) table["turn"] = end.turn.front();
+  if (end.turn.size() > 1) table["turn"] = end.turn;
   return table;
 }
 
@@ -123,27 +134,29 @@ Json radius_json(const ParameterValue& radius) {
   return value_json(radius, declaration);
 }
 
-Json vessel_json(const VesselTable& vessel) {
+Json vessel_json(const VesselTable& vessel, int dimension) {
   Json table;
   table["name"] = vessel.name;
   table["geometry"] = component_json(vessel.geometry);
   if (vessel.radius) table["radius"] = radius_json(*vessel.radius);
   table["kinematics"] = component_json(vessel.kinematics);
-  table["ends"] = Json::array({end_json(vessel.end[0]), end_json(vessel.end[1])});
+  table["ends"] = Json::array({end_json(vessel.end[0], dimension), end_json(vessel.end[1], dimension)});
   table["rigid"] = vessel.rigid;
   return table;
 }
 
-Json wire_json(const WireTable& wire) {
+Json wire_json(const WireTable& wire, int dimension) {
   Json table;
   table["name"] = wire.name;
   if (!wire.vessel.empty()) table["vessel"] = wire.vessel;
   if (wire.geometry) table["geometry"] = component_json(*wire.geometry);
   if (wire.nodes > 0) table["nodes"] = wire.nodes;
+  if (!wire.span.empty()) table["span"] = wire.span;
+  if (!wire.spacing.empty()) table["spacing"] = wire.spacing;
   if (wire.length != LengthRule::by_ends) table["length"] = wire.length == LengthRule::sliding ? "sliding" : "fixed";
   table["radius"] = radius_json(wire.radius);
   table["kinematics"] = component_json(wire.kinematics);
-  table["ends"] = Json::array({end_json(wire.end[0]), end_json(wire.end[1])});
+  table["ends"] = Json::array({end_json(wire.end[0], dimension), end_json(wire.end[1], dimension)});
   return table;
 }
 
@@ -170,8 +183,9 @@ std::string resolved_json(const Composition& composition, const std::vector<std:
   root["title"] = composition.title;
   if (!plugin_path.empty()) root["plugin-path"] = plugin_path;
   root["scene"]["dimension"] = composition.dimension;
-  for (const VesselTable& vessel : composition.vessels) root["vessel"].push_back(vessel_json(vessel));
-  for (const WireTable& wire : composition.wires) root["wire"].push_back(wire_json(wire));
+  for (const VesselTable& vessel : composition.vessels)
+    root["vessel"].push_back(vessel_json(vessel, composition.dimension));
+  for (const WireTable& wire : composition.wires) root["wire"].push_back(wire_json(wire, composition.dimension));
   for (const EnergyTable& energy : composition.energies) root["energy"].push_back(term_json(energy));
   for (const ConstraintTable& constraint : composition.constraints) {
     root["constraint"].push_back(term_json(constraint));

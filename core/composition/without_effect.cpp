@@ -59,9 +59,9 @@ class Idle {
 
   void note_tangents(const EndTable (&ends)[2], const std::string& owner) {
     for (int i = 0; i < 2; ++i) {
-      if (ends[i].tangent.empty() || ends[i].type == EndType::clamped) continue;
+      if (ends[i].tangent.empty() || ends[i].rotation_held || ends[i].in_end_axes) continue;
       note(ends[i].position, std::string("'tangent' of the ") + (i == 0 ? "first" : "last") + " end of " + owner,
-           std::string("an end that is ") + end_type_name(ends[i].type) + " holds no tangent");
+           "an end that is " + ends[i].text(composition_.dimension) + " holds no tangent");
     }
   }
 

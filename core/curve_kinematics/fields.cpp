@@ -15,6 +15,8 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+lie::Rotation about_first_axis(double angle) { return {std::cos(0.5 * angle), std::sin(0.5 * angle), 0.0, 0.0}; }
+
 /// An orientation with the given first axis, as near to `near` as it can be.
 void orient(Manifold manifold, const double* tangent, const double* near, double* out) {
   if (manifold == Manifold::circle) {
@@ -24,6 +26,16 @@ void orient(Manifold manifold, const double* tangent, const double* near, double
     return;
   }
   lie::transport(lie::Rotation::load(near), Vector3::load(tangent)).store(out);
+}
+
+/// The prescribed rotation of a held orientation.
+void turn_held(Manifold manifold, const EndCondition& end, double* held) {
+  if (manifold == Manifold::circle) {
+    held[0] += end.turn[2];
+    return;
+  }
+  const lie::Rotation turned = lie::exp(Vector3::load(end.turn)) * lie::Rotation::load(held);
+  (turned * about_first_axis(end.twist)).store(held);
 }
 
 }  // namespace
@@ -89,8 +101,33 @@ FieldDeclaration held_tangent_field(const CurveMesh& mesh, Manifold manifold, co
     field.station.push_back(mesh.node_arc[at(node)].at(mesh.start_length()));
   }
   field.start = field.reference;
+  for (int e = 0; e < 2; ++e) {
+    if (mesh.held_tangent[e] >= 0)
+      turn_held(manifold, mesh.curve.end[e], field.start.data() + mesh.held_tangent[e] * each);
+  }
   field.fixed.assign(at(field.count * tangent_count(manifold, 1)), 1);
   return field;
+}
+
+std::vector<double> start_orientations(const CurveMesh& mesh, Manifold manifold, const std::vector<double>& reference) {
+  const std::vector<double> tangents = edge_tangents(mesh, mesh.curve.start);
+  const double* turn = mesh.curve.start_turn;
+  if (manifold != Manifold::circle) {
+    std::vector<double> out = transported_orientations(manifold, tangents, reference.data());
+    for (int i = 0; turn != nullptr && i < mesh.edges(); ++i) {
+      (lie::Rotation::load(out.data() + 4 * i) * about_first_axis(turn[i])).store(out.data() + 4 * i);
+    }
+    return out;
+  }
+  std::vector<double> out(at(mesh.edges()));
+  double offset = 0.0;  // of the edge before against State 1
+  for (int i = 0; i < mesh.edges(); ++i) {
+    const double turned = turn == nullptr ? 0.0 : turn[i] - (i > 0 ? turn[i - 1] : 0.0);
+    const double near = reference[at(i)] + offset + turned;
+    orient(manifold, tangents.data() + 2 * i, &near, &out[at(i)]);
+    offset = out[at(i)] - reference[at(i)];
+  }
+  return out;
 }
 
 std::vector<double> edge_tangents(const CurveMesh& mesh, const double* points) {

@@ -40,6 +40,10 @@ std::vector<double> edge_tangents(const CurveMesh& mesh, const double* points);
 std::vector<double> transported_orientations(Manifold manifold, const std::vector<double>& tangents,
                                              const double* first);
 
+/// Orientations of the edges at the start: in the plane the angles next to State 1's (`reference`) after each edge's
+/// prescribed turn, in space the Bishop frames of the start, from State 1's first one, with each edge's twist.
+std::vector<double> start_orientations(const CurveMesh& mesh, Manifold manifold, const std::vector<double>& reference);
+
 /// `invalid_input` naming the first edge of length zero, in State 1 or at the start; `unsupported` where an energy
 /// needs the length of every edge and they have none of their own.
 Status check_curve(const CurveMesh& mesh, const Needs& needs);

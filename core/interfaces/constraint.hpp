@@ -28,8 +28,8 @@ struct RowDeclaration {
   std::vector<int> place_begin;      ///< rows + 1: row r reads places [place_begin[r], place_begin[r+1])
   std::vector<Place> places;         ///< `curve` is the scene's index (CurveView::index)
   std::vector<double> lower, upper;  ///< per row; ±infinity where unbounded; equal: an equality
-  /// The first curve, a wire, belongs inside of the second's lumen: the certificate then looks whether it passes through
-  /// the wall between its rows.
+  /// The first curve, a wire, belongs inside of the second's lumen: the certificate then looks whether it passes
+  /// through the wall between its rows.
   bool inside_lumen = false;
   std::vector<std::string> warnings;
   std::vector<IdleParameter> without_effect;

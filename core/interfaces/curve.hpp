@@ -15,7 +15,11 @@ struct EndCondition {
   bool position_held[3] = {false, false, false};
   bool rotation_held = false;           ///< the tangent, with material frames the whole frame, is held at the node
   bool edge_held = false;               ///< both nodes of the end edge are held, and its length does not count in L
-  double tangent[3] = {0.0, 0.0, 0.0};  ///< unit, along the curve; the direction that is held
+  double tangent[3] = {0.0, 0.0, 0.0};  ///< unit, along the curve; the direction that is held in State 1
+  /// Prescribed rotation of the held direction from State 1, rad, whole turns counted: a rotation vector in global axes
+  /// (in the plane its third component), after a twist about the tangent.
+  double turn[3] = {0.0, 0.0, 0.0};
+  double twist = 0.0;
 };
 
 /// What plugins see of one curve. Pointers stay valid as long as the scene.
@@ -26,9 +30,12 @@ struct CurveView {
   int dimension = 3;
   int nodes = 0;
   Extension extension = Extension::stretching;
-  bool rigid = false;                   ///< no unknowns
-  const double* reference = nullptr;    ///< State 1 node positions, nodes × dimension, mm
-  const double* start = nullptr;        ///< node positions that a solver starts from, nodes × dimension, mm
+  bool rigid = false;                 ///< no unknowns
+  const double* reference = nullptr;  ///< State 1 node positions, nodes × dimension, mm
+  const double* start = nullptr;      ///< node positions that a solver starts from, nodes × dimension, mm
+  /// nodes − 1: what an edge is turned from State 1 at the start, rad, whole turns counted: its angle in the plane, its
+  /// twist about itself, beyond parallel transport, in space.
+  const double* start_turn = nullptr;
   const double* edge_length = nullptr;  ///< nodes − 1: edge lengths at State 1 (vessel) or at the start (wire), mm
   const double* fraction = nullptr;     ///< nodes − 1: f_i of a sliding wire, summing to 1; 0 on a held edge
   const double* arc = nullptr;          ///< nodes: arc coordinate, mm

@@ -10,6 +10,7 @@
 #include "core/interfaces/geometry.hpp"
 #include "core/interfaces/kinematics.hpp"
 #include "core/interfaces/solver.hpp"
+#include "core/model/held_axes.hpp"
 
 namespace bowstring {
 
@@ -41,13 +42,14 @@ Owned<Interface> create(const ComponentChoice& choice, Status& status) {
 struct Curve {
   std::string name;
   CurveView view;  ///< points into the vectors below
-  std::vector<double> reference, start, edge_length, fraction, arc;
+  std::vector<double> reference, start, start_turn, edge_length, fraction, arc;
   std::vector<double> radius;   ///< nodal; empty where none is known
   std::vector<PointData> data;  ///< the geometry's, one value per node
   std::vector<std::string> label;
-  EndType end_type[2] = {EndType::free, EndType::free};
-  std::string end_position[2];  ///< where the composition says so
-  int along = -1;               ///< the vessel that a wire starts along
+  std::string end_text[2];                    ///< what the ends hold, for people
+  std::string end_position[2];                ///< where the composition says so
+  int along = -1;                             ///< the vessel that a wire starts along …
+  double along_begin = 0.0, along_end = 0.0;  ///< … between these arc coordinates of it, mm
   std::string kinematics_name;
   Owned<Kinematics> kinematics{nullptr, nullptr};
   Needs needs;
@@ -73,10 +75,11 @@ struct EnergyUse {
 };
 
 struct ConstraintUse {
-  std::string label, plugin;
+  std::string label, plugin;  ///< no plugin: rows of ends that are held along axes of their own
   Owned<Constraint> constraint{nullptr, nullptr};
   ConstraintScene scene;
   RowDeclaration rows;
+  std::vector<HeldAxis> held_axes;  ///< of such rows, one per row
 };
 
 /// Everything that will be assembled. Curves first the vessels, then the wires, in the composition's order.

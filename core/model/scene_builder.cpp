@@ -4,10 +4,10 @@
 
 #include "core/contact/centerline.hpp"
 #include "core/curve/arc_length.hpp"
-#include "core/curve/spline_curve.hpp"
 #include "core/model/declarations.hpp"
 #include "core/model/manifold.hpp"
 #include "core/model/scene.hpp"
+#include "core/model/start_shape.hpp"
 
 namespace bowstring {
 
@@ -27,29 +27,6 @@ std::string point_text(const double* p, int dimension) {
   std::string text = "(";
   for (int k = 0; k < dimension; ++k) text += (k > 0 ? ", " : "") + number(p[k], 5);
   return text + ") mm";
-}
-
-/// `nodes` points evenly spaced in arc length along the cubic spline through the given ones, ends kept.
-std::vector<double> resample(const std::vector<double>& points, int dimension, int nodes) {
-  SplineFit fit;
-  const Status status = fit_spline(chord_parameters(points, dimension), points, dimension, 3, 0.0, fit);
-  std::vector<double> out(at(nodes * dimension));
-  if (status.ok()) {
-    const std::vector<double> parameters = fit.curve.arc_length().even_parameters(nodes);
-    for (int i = 0; i < nodes; ++i) fit.curve.evaluate(parameters[at(i)], 0, out.data() + at(i * dimension));
-  } else {  // three points carry no cubic spline
-    const std::vector<double> arc = polyline_arc(points, dimension);
-    const std::vector<double> stations = even_stations(arc.back(), nodes);
-    for (int k = 0; k < dimension; ++k) {
-      std::vector<double> coordinate;
-      for (std::size_t i = at(k); i < points.size(); i += at(dimension)) coordinate.push_back(points[i]);
-      for (int i = 0; i < nodes; ++i)
-        out[at(i * dimension + k)] = interpolate_linearly(arc, coordinate, stations[at(i)]);
-    }
-  }
-  std::copy_n(points.begin(), dimension, out.begin());
-  std::copy_n(points.end() - dimension, dimension, out.end() - dimension);
-  return out;
 }
 
 class Builder {
@@ -105,14 +82,19 @@ class Builder {
   void set_ends(Curve& curve, const EndTable* ends);
   std::vector<double> end_tangent(const Curve& curve, const EndTable& table, int end,
                                   const std::vector<double>& from_geometry) const;
-  void spread_moves(Curve& curve, const EndTable* ends) const;
-  void finish_view(Curve& curve, const EndTable* ends);
+  void set_prescribed(Curve& curve, const EndTable& table, int end);
+  bool held_along(const Curve& curve, int end) const;
+  void hold_axes(const Curve& curve);
+  void spread_moves(Curve& curve) const;
+  void spread_turns(Curve& curve) const;
+  void finish_view(Curve& curve, const WireTable* wire = nullptr);
   bool read_geometry(Curve& curve, const ComponentChoice& choice, const EndTable* ends);
   void add_vessel(const VesselTable& table);
   void check_tube(const Curve& curve, const std::string& position);
   void add_wire(const WireTable& table);
-  void start_wire(Curve& wire, const Curve& vessel, int nodes) const;
-  Extension wire_extension(const WireTable& table);
+  bool start_wire(Curve& wire, const Curve& vessel, const WireTable& table);
+  bool grade(Curve& wire, const WireTable& table);
+  Extension wire_extension(const Curve& wire, const WireTable& table);
   void declare_energies();
   void note_without_effect(const std::string& owner, const ParameterSet& parameters,
                            const std::vector<IdleParameter>& without_effect);
@@ -146,6 +128,11 @@ class Builder {
   std::vector<InputError> errors_;
   Status plugin_failure_;
   std::vector<double> tangents_[2];  // of the geometry that is being read
+  // Of the ends that are being read, in global axes, and of all curves.
+  double moves_[2][3] = {};
+  Turn turns_[2];
+  std::vector<double> free_axes_[2];  // unit vectors, three numbers each
+  std::vector<HeldAxis> oblique_[2];
 };
 
 void Builder::set_geometry(Curve& curve, CurveGeometry&& geometry) {
@@ -222,15 +209,14 @@ std::vector<double> Builder::end_tangent(const Curve& curve, const EndTable& tab
 }
 
 void Builder::set_ends(Curve& curve, const EndTable* ends) {
+  const int d = composition_.dimension;
   for (int e = 0; e < 2; ++e) {
     EndCondition& end = curve.view.end[e];
     const EndTable& table = ends[e];
-    curve.end_type[e] = table.type;
+    curve.end_text[e] = table.text(d);
     curve.end_position[e] = table.position;
-    const bool held = table.type != EndType::free;
-    for (int k = 0; k < composition_.dimension; ++k) end.position_held[k] = held;
-    end.rotation_held = table.type == EndType::clamped;
-    end.edge_held = table.type == EndType::held_edge;
+    end.rotation_held = table.rotation_held;
+    end.edge_held = table.edge_held;
     const std::vector<double> tangent = end_tangent(curve, table, e, tangents_[e]);
     double squared = 0.0;
     for (const double t : tangent) squared += t * t;
@@ -241,34 +227,106 @@ void Builder::set_ends(Curve& curve, const EndTable* ends) {
             "a vector that is not zero", "");
     }
     std::copy(tangent.begin(), tangent.end(), end.tangent);
+    set_prescribed(curve, table, e);
   }
 }
 
+/// What an end holds, and where it is moved and turned to, in global axes.
+void Builder::set_prescribed(Curve& curve, const EndTable& table, int e) {
+  const int d = composition_.dimension;
+  EndCondition& end = curve.view.end[e];
+  const Matrix3 axes = table.in_end_axes ? end_axes(end.tangent, d) : Matrix3::identity();
+  Vector3 move, turn;
+  for (std::size_t k = 0; k < table.move.size(); ++k) move[static_cast<int>(k)] = table.move[k];
+  move = axes * move;
+  move.store(moves_[e]);
+  turns_[e] = {};
+  if (table.turn.size() == 1) (d == 2 ? turn[2] : turns_[e].twist) = table.turn.front();
+  if (table.turn.size() == 3) turn = axes * Vector3::load(table.turn.data());
+  turns_[e].rotation = turn;
+  turn.store(end.turn);
+  end.twist = turns_[e].twist;
+
+  free_axes_[e].clear();
+  oblique_[e].clear();
+  const bool whole = std::equal(table.position_held + 1, table.position_held + d, table.position_held);
+  const double* p = curve.reference.data() + at((e == 0 ? 0 : curve.view.nodes - 1) * d);
+  for (int k = 0; k < d; ++k) {
+    const Vector3 axis = axes.column(k);
+    if (!table.position_held[k]) {
+      for (int a = 0; a < 3; ++a) free_axes_[e].push_back(axis[a]);
+    } else if (whole || !table.in_end_axes) {
+      end.position_held[k] = true;
+    } else {
+      HeldAxis held;
+      held.node = e == 0 ? 0 : curve.view.nodes - 1;
+      held.end = e;
+      axis.store(held.axis);
+      for (int a = 0; a < d; ++a) held.value += axis[a] * (p[a] + move[a]);
+      oblique_[e].push_back(held);
+    }
+  }
+}
+
+/// Whether the curve cannot run through this end: no axis is free that its tangent has a share of.
+bool Builder::held_along(const Curve& curve, int e) const {
+  constexpr double across = 1e-3;
+  const double* t = curve.view.end[e].tangent;
+  for (std::size_t k = 0; k < free_axes_[e].size(); k += 3) {
+    const double* axis = free_axes_[e].data() + k;
+    if (std::fabs(axis[0] * t[0] + axis[1] * t[1] + axis[2] * t[2]) > across) return false;
+  }
+  return true;
+}
+
+/// Rows for what no single coordinate holds.
+void Builder::hold_axes(const Curve& curve) {
+  std::vector<HeldAxis> axes = oblique_[0];
+  axes.insert(axes.end(), oblique_[1].begin(), oblique_[1].end());
+  if (axes.empty()) return;
+  for (HeldAxis& held : axes) held.curve = curve.view.index;
+  ConstraintUse use;
+  use.label = "ends of '" + curve.name + "'";
+  use.held_axes = axes;
+  use.constraint = Owned<Constraint>(new HeldAxes(axes, composition_.dimension),
+                                     [](void* made) { delete static_cast<Constraint*>(made); });
+  use.constraint->declare({}, use.rows);
+  scene_->constraints.push_back(std::move(use));
+}
+
 /// The start takes the ends where they are moved to, and what lies between in proportion to its arc length.
-void Builder::spread_moves(Curve& curve, const EndTable* ends) const {
+void Builder::spread_moves(Curve& curve) const {
   const int d = composition_.dimension;
   const int last = curve.view.nodes - 1;
   for (int e = 0; e < 2; ++e) {
-    if (ends[e].move.empty()) continue;
     for (int i = 0; i <= last; ++i) {
       const int from_end = e == 0 ? i : last - i;
       const double share = curve.arc[at(i)] / curve.arc.back();
       const bool whole = from_end == 0 || (from_end == 1 && curve.view.end[e].edge_held);
       const double part = whole ? 1.0 : (e == 0 ? 1.0 - share : share);
-      for (int k = 0; k < d; ++k) curve.start[at(i * d + k)] += part * ends[e].move[at(k)];
+      for (int k = 0; k < d; ++k) curve.start[at(i * d + k)] += part * moves_[e][k];
     }
   }
 }
 
-void Builder::finish_view(Curve& curve, const EndTable* ends) {
+void Builder::spread_turns(Curve& curve) const {
+  curve.start_turn.assign(at(curve.view.nodes - 1), 0.0);
+  const auto turns = [](const Turn& turn) { return turn.twist != 0.0 || norm_squared(turn.rotation) > 0.0; };
+  if (!turns(turns_[0]) && !turns(turns_[1])) return;
+  bowstring::spread_turns(turns_, curve.view, curve.arc, curve.start, curve.start_turn);
+}
+
+void Builder::finish_view(Curve& curve, const WireTable* wire) {
   const int d = composition_.dimension;
   const int edges = curve.view.nodes - 1;
   curve.arc = polyline_arc(curve.reference, d);
-  spread_moves(curve, ends);
+  spread_moves(curve);
+  spread_turns(curve);
   curve.edge_length.clear();
   for (int i = 0; i < edges; ++i) curve.edge_length.push_back(curve.arc[at(i + 1)] - curve.arc[at(i)]);
 
   curve.fraction.assign(at(edges), 1.0);
+  if (wire != nullptr && !wire->spacing.empty()) curve.fraction = wire->spacing;
   for (int e = 0; e < 2; ++e) {
     if (!curve.view.end[e].edge_held) continue;
     const int edge = e == 0 ? 0 : edges - 1;
@@ -277,7 +335,7 @@ void Builder::finish_view(Curve& curve, const EndTable* ends) {
   }
   double sum = 0.0;
   for (const double f : curve.fraction) sum += f;
-  for (double& f : curve.fraction) f /= std::max(sum, 1.0);
+  for (double& f : curve.fraction) f /= sum > 0.0 ? sum : 1.0;
   curve.view.start_length = curve.arc.back() - curve.view.held_length;
 
   double squared = 0.0;
@@ -290,9 +348,11 @@ void Builder::finish_view(Curve& curve, const EndTable* ends) {
   curve.view.name = curve.name.c_str();
   curve.view.reference = curve.reference.data();
   curve.view.start = curve.start.data();
+  curve.view.start_turn = curve.start_turn.data();
   curve.view.edge_length = curve.edge_length.data();
   curve.view.fraction = curve.fraction.data();
   curve.view.arc = curve.arc.data();
+  if (!curve.view.rigid) hold_axes(curve);
 }
 
 void Builder::check_tube(const Curve& curve, const std::string& position) {
@@ -343,7 +403,7 @@ void Builder::add_vessel(const VesselTable& table) {
   curve->view.rigid = table.rigid;
 
   if (!read_geometry(*curve, table.geometry, table.end)) return;
-  finish_view(*curve, table.end);
+  finish_view(*curve);
 
   Profile radius;
   bool known = table.radius.has_value();
@@ -378,21 +438,53 @@ void Builder::add_vessel(const VesselTable& table) {
   scene_->curves.push_back(std::move(curve));
 }
 
-void Builder::start_wire(Curve& wire, const Curve& vessel, int nodes) const {
+/// The wire's State 1: the part of its vessel's centerline that it spans, on a mesh of its own.
+bool Builder::start_wire(Curve& wire, const Curve& vessel, const WireTable& table) {
   const int d = composition_.dimension;
+  const double length = vessel.arc.back();
   wire.along = vessel.view.index;
+  wire.along_end = length;
+  if (!table.span.empty()) {
+    if (table.span[1] > length * (1.0 + 1e-9)) {
+      error(table.span_position, "'span' of wire '" + table.name + "' ends at " + number(table.span[1], 6) + " mm",
+            "at most the length of vessel '" + vessel.name + "', " + number(length, 6) + " mm",
+            "shorten the span, or leave it out for all of the vessel");
+      return false;
+    }
+    wire.along_begin = table.span[0];
+    wire.along_end = std::min(table.span[1], length);
+  }
   wire.view.dimension = d;
-  wire.view.nodes = nodes;
-  if (nodes == vessel.view.nodes) {
+  wire.view.nodes = table.nodes > 0 ? table.nodes : vessel.view.nodes;
+  for (int e = 0; e < 2; ++e) tangents_[e].assign(vessel.view.end[e].tangent, vessel.view.end[e].tangent + 3);
+  if (table.span.empty() && table.spacing.empty() && wire.view.nodes == vessel.view.nodes) {
     wire.reference = vessel.reference;
   } else {
-    wire.reference = resample(vessel.reference, d, nodes);
+    if (!grade(wire, table)) return false;
+    std::vector<double> share = cumulative_shares(table.spacing, wire.view.nodes - 1);
+    for (double& s : share) s = (wire.along_begin + s * (wire.along_end - wire.along_begin)) / length;
+    const Resampled part = resample(vessel.reference, d, share);
+    wire.reference = part.points;
+    if (wire.along_begin > 0.0) tangents_[0] = part.first_tangent;
+    if (wire.along_end < length) tangents_[1] = part.last_tangent;
   }
   wire.start = wire.reference;
+  return true;
 }
 
-Extension Builder::wire_extension(const WireTable& table) {
-  const bool held = table.end[0].type != EndType::free && table.end[1].type != EndType::free;
+/// Checks that `spacing` has a share for every edge.
+bool Builder::grade(Curve& wire, const WireTable& table) {
+  const int edges = wire.view.nodes - 1;
+  if (table.spacing.empty() || static_cast<int>(table.spacing.size()) == edges) return true;
+  error(table.spacing_position,
+        "'spacing' of wire '" + table.name + "' has " + std::to_string(table.spacing.size()) + " entries",
+        "one for each of its " + std::to_string(edges) + " edges",
+        "write " + std::to_string(edges) + " numbers, or change its nodes");
+  return false;
+}
+
+Extension Builder::wire_extension(const Curve& wire, const WireTable& table) {
+  const bool held = held_along(wire, 0) && held_along(wire, 1);
   if (table.length == LengthRule::by_ends) {
     return held && !table.geometry ? Extension::sliding : Extension::fixed;
   }
@@ -414,17 +506,21 @@ void Builder::add_wire(const WireTable& table) {
   const Curve* vessel = find(table.vessel);
   if (table.geometry) {
     if (!read_geometry(*curve, *table.geometry, table.end)) return;
-  } else if (vessel != nullptr) {
-    start_wire(*curve, *vessel, table.nodes > 0 ? table.nodes : vessel->view.nodes);
-    for (int e = 0; e < 2; ++e) {
-      tangents_[e] = std::vector<double>(vessel->view.end[e].tangent, vessel->view.end[e].tangent + 3);
+    if (!table.spacing.empty()) {
+      if (!grade(*curve, table)) return;
+      curve->reference =
+          resample(curve->reference, composition_.dimension, cumulative_shares(table.spacing, curve->view.nodes - 1))
+              .points;
+      curve->start = curve->reference;
     }
+  } else if (vessel != nullptr) {
+    if (!start_wire(*curve, *vessel, table)) return;
     set_ends(*curve, table.end);
   } else {
     return;  // the composition has refused it
   }
-  curve->view.extension = wire_extension(table);
-  finish_view(*curve, table.end);
+  curve->view.extension = wire_extension(*curve, table);
+  finish_view(*curve, &table);
 
   std::vector<double> radius;
   const Status status = sample_profile(table.radius.profile, *curve, curve->arc, radius);
@@ -571,8 +667,10 @@ void Builder::declare_constraints() {
       use.scene.radius.push_back(curve.radius.empty() ? nullptr : curve.radius.data());
     }
     if (table.on.size() == 2 && find(table.on[0])->along == find(table.on[1])->view.index) {
+      const Curve& wire = *find(table.on[0]);
       use.scene.starts_along = true;
-      use.scene.end_arc = find(table.on[1])->arc.back();
+      use.scene.start_arc = wire.along_begin;
+      use.scene.end_arc = wire.along_end;
     }
     use.scene.window_segments = traits_.window_segments;
     use.scene.window_length = traits_.window_length;

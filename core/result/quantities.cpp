@@ -146,6 +146,22 @@ Status read_contacts(Session& session, const Solution& solution, Readings& out) 
   return {};
 }
 
+/// Ends that are held along axes of their own have rows instead of eliminated coordinates.
+void add_held_axes(const Session& session, const Solution& solution, const Curve& curve, SupportRecord (&ends)[2],
+                   bool (&held)[2]) {
+  for (const RowOrigin& group : session.assembly->row_origins()) {
+    if (group.constraint < 0) continue;
+    const std::vector<HeldAxis>& axes = session.scene->constraints[at(group.constraint)].held_axes;
+    for (std::size_t r = 0; r < axes.size(); ++r) {
+      if (axes[r].curve != curve.view.index) continue;
+      held[axes[r].end] = true;
+      for (int k = 0; k < 3; ++k) {
+        ends[axes[r].end].force[k] -= solution.multipliers[at(group.first) + r] * axes[r].axis[k];
+      }
+    }
+  }
+}
+
 /// Support reactions: the Lagrangian gradient of the fixed unknowns, gathered at the nearer end.
 Status read_supports(Session& session, const Solution& solution, Readings& out) {
   std::vector<double> gradient;
@@ -190,6 +206,7 @@ Status read_supports(Session& session, const Solution& solution, Readings& out) 
         }
       }
     }
+    add_held_axes(session, solution, *curve, ends, held);
     for (int end = 0; end < 2; ++end) {
       if (!held[end]) continue;
       ends[end].curve = curve->view.index;

@@ -57,7 +57,7 @@ FieldDeclaration EdgeFrames::orientation_field(const Needs& needs, const std::ve
   field.manifold = manifold_;
   field.count = mesh_.edges();
   field.reference = reference;
-  field.start = transported_orientations(manifold_, edge_tangents(mesh_, mesh_.curve.start), first_frame_.data());
+  field.start = start_orientations(mesh_, manifold_, reference);
   for (int i = 0; i < mesh_.edges(); ++i) {
     field.station.push_back(mesh_.edge_middle(i));
     field.fixed.insert(field.fixed.end(), at(tangent_count(manifold_, 1)),

@@ -250,9 +250,11 @@ FieldDeclaration Nodes::angle_field(const Needs& needs) const {
   field.reference.assign(at(mesh_.edges()), 0.0);
   const std::vector<double> tangents = edge_tangents(mesh_, mesh_.curve.start);
   const std::vector<double> start = transported_orientations(manifold_, tangents, first_frame_.data());
+  const double* turn = mesh_.curve.start_turn;
   for (int i = 0; i < mesh_.edges(); ++i) {
     const lie::Rotation follows = lie::transport(reference_frames_[at(i)], Vector3::load(tangents.data() + 3 * i));
-    field.start.push_back(lie::log(follows.inverse() * lie::Rotation::load(start.data() + 4 * i))[0]);
+    field.start.push_back(lie::log(follows.inverse() * lie::Rotation::load(start.data() + 4 * i))[0] +
+                          (turn != nullptr ? turn[i] : 0.0));
     field.station.push_back(mesh_.edge_middle(i));
     field.fixed.push_back(mesh_.edge_held(i) ? 1 : 0);
   }

@@ -11,6 +11,9 @@
 //   [[agree]]  runs = ["a", "b"], path = "energy.total", relative = 1e-8
 //   [[order]]  runs = ["N = 20", "N = 40", …], steps = [19, 39, …], path = "energy.total", least = 1.9, most = 2.2,
 //              limit = 112.1, relative = 0.003
+//   [[slope]]  runs = ["a", "b"], between = [0.999, 1.001], path = "curves.0.points.-1.1", value = 24.8, relative =
+//   1e-5
+//              (or equals = { "supports.0.force_N.0" = 1.0, … }: a combination, the mean of both runs)
 //
 // Paths address the result document; entries of lists by number, negative from the end. Prints a table and ends with "N
 // passed, N failed, N skipped".
@@ -214,6 +217,34 @@ void check_order(const std::map<std::string, Json>& results, const toml::table& 
   }
 }
 
+/// A combination of paths, averaged over the named runs.
+std::vector<double> mean_of_combination(const std::map<std::string, Json>& results, const toml::table& table,
+                                        const toml::table& factors) {
+  double sum = 0.0;
+  for (const auto& [path, factor] : factors) {
+    const std::vector<double> values = gather(results, table, std::string(path.str()));
+    if (values.empty()) return {};
+    for (const double value : values) {
+      sum += factor.value_or(0.0) * value / static_cast<double>(values.size());
+    }
+  }
+  return {sum};
+}
+
+void check_slope(const std::map<std::string, Json>& results, const toml::table& table, Tally& tally) {
+  const std::string path = table["path"].value_or(std::string());
+  const std::vector<double> values = gather(results, table, path);
+  std::vector<double> expected{table["value"].value_or(0.0)};
+  if (const toml::table* equals = table["equals"].as_table()) expected = mean_of_combination(results, table, *equals);
+  if (values.size() != 2 || expected.empty()) return void(++tally.skipped);
+  const toml::array& between = *table["between"].as_array();
+  const double slope = (values[1] - values[0]) / (between[1].value_or(0.0) - between[0].value_or(0.0));
+  const double error = std::fabs(slope / expected.front() - 1.0);
+  tally.check(error <= table["relative"].value_or(0.0),
+              "slope of " + path + " between " + names(table).front() + " and " + names(table).back() + " = " +
+                  number(slope) + ", expected " + number(expected.front()) + ", off by " + number(error));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -263,6 +294,9 @@ int main(int argc, char** argv) {
   }
   if (const toml::array* list = table["order"].as_array()) {
     for (const auto& node : *list) check_order(results, *node.as_table(), tally);
+  }
+  if (const toml::array* list = table["slope"].as_array()) {
+    for (const auto& node : *list) check_slope(results, *node.as_table(), tally);
   }
   std::printf("%d passed, %d failed, %d skipped\n", tally.passed, tally.failed, tally.skipped);
   return tally.failed > 0 || tally.passed == 0 ? 1 : 0;

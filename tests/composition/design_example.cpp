@@ -27,7 +27,7 @@ TEST_CASE("the documented composition loads, every number in mm, N and rad") {
   REQUIRE(vessel.radius.has_value());
   CHECK(vessel.radius->profile.constant == 6.0);
   CHECK(vessel.kinematics.name == "edge-frames");
-  CHECK(vessel.end[0].type == EndType::pinned);
+  CHECK(vessel.end[0].type == "pinned");
   CHECK_FALSE(vessel.rigid);
 
   REQUIRE(scene.wires.size() == 1);
@@ -76,8 +76,8 @@ TEST_CASE("defaults stand where the file says nothing") {
   CHECK_FALSE(scene.solver.parameters.has("time-limit"));
   CHECK(scene.enforcement.name == "kkt");
   CHECK(scene.wires[0].nodes == 0);
-  CHECK(scene.wires[0].end[0].type == EndType::pinned);
-  CHECK(scene.wires[0].end[1].type == EndType::pinned);
+  CHECK(scene.wires[0].end[0].type == "pinned");
+  CHECK(scene.wires[0].end[1].type == "pinned");
   CHECK(scene.constraints[0].component.parameters.text("centerline") == "spline");
   CHECK(scene.certificate.stationarity == 1e-6);
   CHECK(scene.certificate.penetration == 1e-8);

@@ -57,8 +57,8 @@ TEST_CASE("a plugin's name alone opens into a table, and ends are first and last
                                                                           {"wire.w.ends.last", "clamped"},
                                                                           {"wire.w.ends.last.tangent", "[1, 0]"}});
   CHECK(scene.wires[0].kinematics.parameters.flag("regularised"));
-  CHECK(scene.wires[0].end[0].type == EndType::pinned);
-  CHECK(scene.wires[0].end[1].type == EndType::clamped);
+  CHECK(scene.wires[0].end[0].type == "pinned");
+  CHECK(scene.wires[0].end[1].type == "clamped");
   CHECK(scene.wires[0].end[1].tangent == std::vector<double>{1.0, 0.0});
 }
 

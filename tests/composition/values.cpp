@@ -103,8 +103,8 @@ TEST_CASE("ends are names or tables") {
   const Composition scene = bench.loaded(
       test::small_scene,
       {{"wire.w.ends", R"(["held-edge", { type = "clamped", tangent = [1, 0.5] }])"}, {"vessel.v.rigid", "true"}});
-  CHECK(scene.wires[0].end[0].type == EndType::held_edge);
-  CHECK(scene.wires[0].end[1].type == EndType::clamped);
+  CHECK(scene.wires[0].end[0].type == "held-edge");
+  CHECK(scene.wires[0].end[1].type == "clamped");
   CHECK(scene.wires[0].end[1].tangent == std::vector<double>{1.0, 0.5});
   CHECK(scene.wires[0].end[1].position ==
         "--set wire.w.ends=[\"held-edge\", { type = \"clamped\", tangent = [1, 0.5] }]");
