@@ -72,6 +72,10 @@ void spread_turns(const Turn (&turn)[2], const CurveView& view, const std::vecto
   const auto held = [&](int end) {
     return std::any_of(view.end[end].position_held, view.end[end].position_held + d, [](bool axis) { return axis; });
   };
+  // A rotation about the tangent twists, whichever way it is written.
+  const auto twist = [&](int end) {
+    return turn[end].twist + dot(turn[end].rotation, Vector3::load(view.end[end].tangent));
+  };
   const bool from_last = held(1) && !held(0);
   std::vector<double> turned = points;
   edge_turn.assign(at(last), 0.0);
@@ -79,7 +83,7 @@ void spread_turns(const Turn (&turn)[2], const CurveView& view, const std::vecto
     const int i = from_last ? last - 1 - k : k;
     const double share = 0.5 * (arc[at(i)] + arc[at(i + 1)]) / arc.back();
     const Vector3 first = (1.0 - share) * turn[0].rotation, second = share * turn[1].rotation;
-    edge_turn[at(i)] = d == 2 ? first[2] + second[2] : (1.0 - share) * turn[0].twist + share * turn[1].twist;
+    edge_turn[at(i)] = d == 2 ? first[2] + second[2] : (1.0 - share) * twist(0) + share * twist(1);
     Vector3 edge;
     for (int a = 0; a < d; ++a) edge[a] = points[at((i + 1) * d + a)] - points[at(i * d + a)];
     edge = (lie::exp(second) * lie::exp(first)) * edge;

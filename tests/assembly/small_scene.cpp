@@ -66,6 +66,12 @@ PluginHost& plugin_host() {
   return host;
 }
 
+std::string edited(std::string text, const std::string& word, const std::string& by) {
+  const std::size_t position = text.find(word);
+  REQUIRE(position != std::string::npos);
+  return text.replace(position, word.size(), by);
+}
+
 std::string refusal_text(const Refusal& refusal) {
   std::string text = refusal.plugin_failure.text;
   for (const InputError& error : refusal.errors) text += (text.empty() ? "" : "\n") + error.text();

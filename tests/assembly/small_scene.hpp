@@ -33,6 +33,9 @@ PluginHost& plugin_host();
 /// Texts of everything that a refusal holds.
 std::string refusal_text(const Refusal& refusal);
 
+/// The text with its first `word` replaced.
+std::string edited(std::string text, const std::string& word, const std::string& by);
+
 /// Prepares a composition that has to be right, with a window that no row leaves.
 std::unique_ptr<Session> session_of(const SmallScene& scene);
 std::unique_ptr<Session> session_of_text(const std::string& text);

@@ -126,23 +126,14 @@ TEST_CASE("keys that a table must have") {
 
 TEST_CASE("what belongs to a later version is said to") {
   Workbench bench;
-  const std::string text = scene_with("radius = \"0.4 mm\"\n",
-                                      "radius = \"0.4 mm\"\nspan = [0, 1]\nspacing = [1]\n"
-                                      "ends = [{ type = \"free\", turn = 1 }, \"pinned\"]\n") +
-                           "[start]\n[[step]]\n[[loss]]\n";
-  const std::string known =
-      "expected one of: name, vessel, geometry, ends, kinematics, nodes, radius, length; remove it";
+  const std::string text = std::string(test::small_scene) + "[start]\n[[step]]\n[[loss]]\n";
   const std::string tables =
       "expected one of: schema, title, base, plugin-path, set, scene, vessel, wire, energy, "
       "constraint, enforcement, solver, certificate; remove it";
   CHECK(bench.errors(text) ==
-        Texts{"scene.toml:12:1: key 'span' in wire 'w' is not available in this version; " + known,
-              "scene.toml:13:1: key 'spacing' in wire 'w' is not available in this version; " + known,
-              "scene.toml:14:26: key 'turn' in the first end of wire 'w' is not available in this version; expected "
-              "one of: type, tangent, move; remove it",
-              "scene.toml:31:2: key 'start' in the composition is not available in this version; " + tables,
-              "scene.toml:32:3: key 'step' in the composition is not available in this version; " + tables,
-              "scene.toml:33:3: key 'loss' in the composition is not available in this version; " + tables});
+        Texts{"scene.toml:28:2: key 'start' in the composition is not available in this version; " + tables,
+              "scene.toml:29:3: key 'step' in the composition is not available in this version; " + tables,
+              "scene.toml:30:3: key 'loss' in the composition is not available in this version; " + tables});
 }
 
 TEST_CASE("a wire with a geometry of its own takes that geometry's nodes, and needs no vessel") {
@@ -170,7 +161,7 @@ TEST_CASE("a move is a displacement of an end that is held") {
         "\"pinned\"");
   CHECK(error("{ type = \"pinned\", move = [1, 0, 0] }") ==
         "'move' of the first end of wire 'w' has 3 entries; expected a list of as many numbers as the scene has "
-        "dimensions; write the displacement from State 1 in global axes");
+        "dimensions; write the displacement from State 1, one number per axis");
   CHECK(error("{ type = \"pinned\", move = [\"1 N\", 0] }") ==
         "wrong unit: an entry of 'move' of the first end of wire 'w' is text \"1 N\"; expected a quantity in mm; write "
         "\"1 mm\"");

@@ -134,7 +134,7 @@ TEST_CASE("an override is checked like what stands in a file, at its own place")
   Workbench bench;
   CHECK(errors_of(bench, "wire.w.raduis", "1") ==
         Texts{"--set wire.w.raduis=1: unknown key 'raduis' in wire 'w'; expected one of: name, vessel, geometry, ends, "
-              "kinematics, nodes, radius, length; did you mean 'radius'?"});
+              "kinematics, span, spacing, nodes, radius, length; did you mean 'radius'?"});
   CHECK(errors_of(bench, "wire.w.radius", "0 mm") ==
         Texts{"--set wire.w.radius=0 mm: 'radius' of wire 'w' is 0 mm, out of bounds; expected more than 0 "
               "mm; write a larger number"});

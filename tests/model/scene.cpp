@@ -8,12 +8,6 @@ namespace bowstring::testing {
 
 namespace {
 
-std::string edited(std::string text, const std::string& word, const std::string& by) {
-  const std::size_t position = text.find(word);
-  REQUIRE(position != std::string::npos);
-  return text.replace(position, word.size(), by);
-}
-
 SmallScene with_ends(int dimension, const std::string& first, const std::string& last) {
   SmallScene scene;
   scene.dimension = dimension;

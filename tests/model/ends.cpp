@@ -1,0 +1,157 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "core/model/start_shape.hpp"
+#include "core/result/quantities.hpp"
+#include "tests/assembly/small_scene.hpp"
+
+namespace bowstring::testing {
+
+namespace {
+
+struct Solved {
+  std::unique_ptr<Session> session;
+  Solution solution;
+  Readings readings;
+
+  const CurveRecord& curve(const std::string& name) const {
+    return readings.curves[at(session->scene->find(name)->view.index)];
+  }
+};
+
+Solved solved(const std::string& text) {
+  Solved out;
+  out.session = session_of_text(text);
+  out.solution = solve(*out.session, nullptr);
+  CAPTURE(out.solution.solver.reason);
+  REQUIRE(out.solution.certificate.verdict == Verdict::converged);
+  REQUIRE(read_solution(*out.session, out.solution, out.readings).ok());
+  return out;
+}
+
+/// A straight rod of 100 mm with EI 1000 N mm² in the plane.
+std::string rod(const std::string& kinematics, const std::string& ends, const std::string& more = "") {
+  return "schema = 1\n[scene]\ndimension = 2\n[[wire]]\nname = \"rod\"\nradius = 0.1\nkinematics = \"" + kinematics +
+         "\"\ngeometry = { type = \"line\", length = 100, nodes = 41 }\nends = " + ends +
+         "\n[[energy]]\ntype = \"wire-bending\"\non = \"rod\"\nbending-stiffness = 1000\n" + more +
+         "[solver]\ntype = \"ipopt\"\n";
+}
+
+/// A straight vessel of 100 mm in space with GJ 133 N mm².
+std::string tube(const std::string& kinematics, const std::string& ends) {
+  return "schema = 1\n[scene]\ndimension = 3\n[[vessel]]\nname = \"tube\"\nkinematics = \"" + kinematics +
+         "\"\ngeometry = { type = \"line\", length = 100, nodes = 41 }\nends = " + ends +
+         "\n[[energy]]\ntype = \"vessel-strain\"\non = \"tube\"\nbending-stiffness = 2000\n"
+         "torsional-stiffness = 133\nstretch-stiffness = 500\n[solver]\ntype = \"ipopt\"\n";
+}
+
+}  // namespace
+
+TEST_CASE("a turned end rolls a rod up into whole circles, from either end, to rounding") {
+  const double energy = 0.5 * 1000.0 * std::pow(4.0 * M_PI, 2) / 100.0;
+  for (const char* kinematics : {"nodes", "edge-frames"}) {
+    for (const char* ends : {R"(["clamped", { rotation = "held", turn = "720 deg" }])",
+                             R"([{ rotation = "held", turn = "-720 deg" }, "clamped"])",
+                             R"([{ type = "clamped", turn = "-360 deg" }, { rotation = "held", turn = "360 deg" }])"}) {
+      CAPTURE(kinematics);
+      CAPTURE(ends);
+      const Solved rolled = solved(rod(kinematics, ends));
+      CHECK(rolled.readings.term_energy[0] == doctest::Approx(energy).epsilon(1e-12));
+      const std::vector<double>& p = rolled.curve("rod").points;
+      CHECK(std::hypot(p[p.size() - 2] - p[0], p[p.size() - 1] - p[1]) <= 1e-10);
+    }
+  }
+}
+
+TEST_CASE("a solver comes back to the circle from a perturbed start") {
+  for (const char* kinematics : {"nodes", "edge-frames"}) {
+    CAPTURE(kinematics);
+    const auto session =
+        session_of_text(rod(kinematics, R"(["clamped", { rotation = "held", turn = "360 deg", position = "free" }])"));
+    const Solution solution = solve(*session, nullptr);
+    REQUIRE(solution.certificate.verdict == Verdict::converged);
+    SolverContext context;
+    SolverResult result;
+    REQUIRE(session->solver->solve(*session->assembly, moved_start(*session, 0.2, 5), context, result).ok());
+    CHECK(result.iterations >= 2);
+    double energy = 0.0;
+    ProblemEvaluation evaluation;
+    evaluation.energy = &energy;
+    REQUIRE(session->assembly->evaluate(result.q, evaluation).ok());
+    CHECK(energy == doctest::Approx(0.5 * 1000.0 * std::pow(2.0 * M_PI, 2) / 100.0).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a turn about the tangent twists, whole turns counted, as a number or as a vector") {
+  const double moment = 133.0 * 4.0 * M_PI / 100.0;
+  for (const char* kinematics : {"nodes", "edge-frames"}) {
+    for (const char* turn : {R"("720 deg")", R"(["720 deg", 0, 0])"}) {
+      CAPTURE(kinematics);
+      CAPTURE(turn);
+      const Solved twisted =
+          solved(tube(kinematics, std::string(R"(["clamped", { type = "clamped", turn = )") + turn + " }]"));
+      CHECK(twisted.readings.term_energy[0] == doctest::Approx(0.5 * moment * 4.0 * M_PI).epsilon(1e-10));
+      REQUIRE(twisted.readings.supports.size() == 2);
+      CHECK(twisted.readings.supports[1].moment[0] == doctest::Approx(moment).epsilon(1e-9));
+      CHECK(twisted.readings.supports[0].moment[0] == doctest::Approx(-moment).epsilon(1e-9));
+    }
+  }
+}
+
+TEST_CASE("an end held along one of its own axes slides along the other, and its support pulls along the held one") {
+  // A roller at 45 degrees under a rod that is clamped at its first end.
+  const std::string ends = R"(["clamped", { position = ["free", "held"], axes = "end", tangent = [1, 1] }])";
+  const std::string load = "[[energy]]\ntype = \"point-load\"\non = \"rod\"\nforce = [0, -0.4]\nat = 50\n";
+  for (const char* kinematics : {"nodes", "edge-frames"}) {
+    CAPTURE(kinematics);
+    const Solved rolled = solved(rod(kinematics, ends, load));
+    const std::vector<double>& p = rolled.curve("rod").points;
+    const double dx = p[p.size() - 2] - 100.0, dy = p[p.size() - 1];
+    CHECK(std::fabs(dx) > 1e-3);
+    CHECK(std::fabs(dy - dx) <= 1e-9);
+    REQUIRE(rolled.readings.supports.size() == 2);
+    const SupportRecord& roller = rolled.readings.supports[1];
+    CHECK(roller.force[1] > 0.01);
+    CHECK(roller.force[0] == doctest::Approx(-roller.force[1]).epsilon(1e-7));
+    const SupportRecord& root = rolled.readings.supports[0];
+    CHECK(std::fabs(root.force[0] + roller.force[0]) <= 1e-7);
+    CHECK(std::fabs(root.force[1] + roller.force[1] - 0.4) <= 1e-7);
+  }
+}
+
+TEST_CASE("a move in the end's axes is one along the tangent") {
+  const auto end_of = [](const std::string& end) {
+    const Solved moved = solved(rod("edge-frames", "[\"clamped\", " + end + "]"));
+    const std::vector<double>& p = moved.curve("rod").points;
+    return std::vector<double>(p.end() - 2, p.end());
+  };
+  const std::vector<double> global = end_of(R"({ type = "pinned", move = [-3, 1] })");
+  const std::vector<double> own = end_of(R"({ type = "pinned", move = [-3, 1], axes = "end" })");
+  CHECK(global == std::vector<double>{97.0, 1.0});
+  CHECK(own == global);  // the rod runs along x
+  const std::vector<double> turned = end_of(R"({ type = "pinned", move = [-3, 0], axes = "end", tangent = [3, 4] })");
+  CHECK(turned[0] == doctest::Approx(98.2).epsilon(1e-12));
+  CHECK(turned[1] == doctest::Approx(-2.4).epsilon(1e-12));
+}
+
+TEST_CASE("turned edges are put together from the end that is held") {
+  CurveView view;
+  view.dimension = 2;
+  view.nodes = 5;
+  for (int k = 0; k < 2; ++k) view.end[1].position_held[k] = true;
+  Turn turn[2];
+  turn[0].rotation[2] = 1.0;
+  std::vector<double> points = {0, 0, 1, 0, 2, 0, 3, 0, 4, 0}, edge_turn;
+  spread_turns(turn, view, {0, 1, 2, 3, 4}, points, edge_turn);
+  CHECK(edge_turn == std::vector<double>{0.875, 0.625, 0.375, 0.125});
+  CHECK(points[8] == 4.0);
+  CHECK(points[9] == 0.0);
+  for (int i = 0; i < 4; ++i) {
+    const double dx = points[at(2 * i + 2)] - points[at(2 * i)], dy = points[at(2 * i + 3)] - points[at(2 * i + 1)];
+    CHECK(std::atan2(dy, dx) == doctest::Approx(edge_turn[at(i)]).epsilon(1e-14));
+    CHECK(std::hypot(dx, dy) == doctest::Approx(1.0).epsilon(1e-14));
+  }
+}
+
+}  // namespace bowstring::testing
