@@ -401,9 +401,10 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
     if (here.closest.location == Location::window_edge || std::isnan(here.slope)) break;
     if (here.slope == 0.0) break;
     (here.slope > 0.0 ? low : high) = here;
-    double next = here.second < 0.0 ? here.t - here.slope / here.second : nan_value;
+    const double step = here.second < 0.0 ? -here.slope / here.second : nan_value;
+    if (std::abs(step) <= 4.0 * epsilon || high.t - low.t <= 4.0 * epsilon) break;
+    double next = here.t + step;
     if (!(next > low.t && next < high.t)) next = 0.5 * (low.t + high.t);
-    if (std::abs(next - here.t) <= 4.0 * epsilon || high.t - low.t <= 4.0 * epsilon) break;
     here = at(next, here.closest.at.sigma());
   }
   return answer(here, true);

@@ -10,7 +10,8 @@
 //              "solver.iterations" = { at-most = 25 }, "status" = { is = "converged" } }
 //   [[agree]]  runs = ["a", "b"], path = "energy.total", relative = 1e-8
 //   [[order]]  runs = ["N = 20", "N = 40", …], steps = [19, 39, …], path = "energy.total", least = 1.9, most = 2.2,
-//              limit = 112.1, relative = 0.003
+//              limit = 112.1, relative = 0.003     # limit 0: the values themselves are errors; minus = [runs]: of
+//              differences
 //   [[slope]]  runs = ["a", "b"], between = [0.999, 1.001], path = "curves.0.points.-1.1", value = 24.8, relative =
 //   1e-5
 //              (or equals = { "supports.0.force_N.0" = 1.0, … }: a combination, the mean of both runs)
@@ -170,17 +171,17 @@ Fit fit_order(const std::vector<double>& h, const std::vector<double>& value) {
   return best;
 }
 
-std::vector<std::string> names(const toml::table& table) {
+std::vector<std::string> names(const toml::table& table, const char* key = "runs") {
   std::vector<std::string> out;
-  for (const auto& node : *table["runs"].as_array()) out.push_back(node.value_or(std::string()));
+  for (const auto& node : *table[key].as_array()) out.push_back(node.value_or(std::string()));
   return out;
 }
 
 /// Values of a path in the named runs; empty where one of them was skipped or has no number.
 std::vector<double> gather(const std::map<std::string, Json>& results, const toml::table& table,
-                           const std::string& path) {
+                           const std::string& path, const char* runs = "runs") {
   std::vector<double> out;
-  for (const std::string& name : names(table)) {
+  for (const std::string& name : names(table, runs)) {
     const auto found = results.find(name);
     const Json* value = found == results.end() ? nullptr : lookup(found->second, path);
     if (value == nullptr || !value->is_number()) return {};
@@ -203,15 +204,21 @@ void check_agreement(const std::map<std::string, Json>& results, const toml::tab
 
 void check_order(const std::map<std::string, Json>& results, const toml::table& table, Tally& tally) {
   const std::string path = table["path"].value_or(std::string());
-  const std::vector<double> values = gather(results, table, path);
+  std::vector<double> values = gather(results, table, path);
   if (values.size() < 4) return void(++tally.skipped);
+  if (table.contains("minus")) {
+    const std::vector<double> others = gather(results, table, path, "minus");
+    if (others.size() != values.size()) return void(++tally.skipped);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] -= others[i];
+  }
   std::vector<double> h;
   for (const auto& node : *table["steps"].as_array()) h.push_back(1.0 / node.value_or(1.0));
-  const Fit fit = fit_order(h, values);
+  const bool to_zero = table["limit"].value<double>() == 0.0;
+  const Fit fit = to_zero ? fit_line(h, values, 0.0) : fit_order(h, values);
   tally.check(fit.order >= table["least"].value_or(0.0) && fit.order <= table["most"].value_or(1e9),
               path + " converges with order " + number(fit.order) + " over " + std::to_string(values.size()) +
                   " meshes to " + number(fit.limit));
-  if (const auto limit = table["limit"].value<double>()) {
+  if (const auto limit = table["limit"].value<double>(); limit && !to_zero) {
     tally.check(std::fabs(fit.limit / *limit - 1.0) <= table["relative"].value_or(0.0),
                 path + " has limit " + number(fit.limit) + ", expected " + number(*limit));
   }
