@@ -59,13 +59,13 @@ struct Travel {
 
 /// One row as the result document reports it.
 struct RowReport {
-  int wire_curve = -1, vessel_curve = -1;
-  double wire_coordinate = 0.0;           ///< in edges of the wire: 2.25 is a quarter along the third
-  double vessel_coordinate = 0.0;         ///< in edges of the vessel
-  double gap = 0.0;                       ///< mm, ≤ 0 inside
-  double clearance = 0.0;                 ///< mm
-  double direction[3] = {0.0, 0.0, 0.0};  ///< unit: of the force that the vessel exerts on the wire
-  double force_per_multiplier = 1.0;      ///< N per unit of the row's multiplier; a bilateral row's force may reverse
+  int wire_curve = -1, vessel_curve = -1;  ///< the curve that touches, and what it touches; −1: no vessel
+  double wire_coordinate = 0.0;            ///< in edges of the wire: 2.25 is a quarter along the third
+  double vessel_coordinate = 0.0;          ///< in edges of the vessel
+  double gap = 0.0;                        ///< mm, ≤ 0 inside
+  double clearance = 0.0;                  ///< mm
+  double direction[3] = {0.0, 0.0, 0.0};   ///< unit: of the force that the vessel exerts on the wire
+  double force_per_multiplier = 1.0;       ///< N per unit of the row's multiplier; a bilateral row's force may reverse
 };
 
 /// kind `constraint`: rows lower ≤ r(y) ≤ upper that couple places. Within its declared places a row is smooth;

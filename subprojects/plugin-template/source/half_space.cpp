@@ -78,6 +78,21 @@ class HalfSpace final : public Constraint {
     return {};
   }
 
+  /// Each row is a contact of its node with the plane, which belongs to no vessel.
+  Status report(const PlaceTables& at, std::vector<RowReport>& out) const noexcept override {
+    return guard([&] {
+      out.clear();
+      for (const Node& node : nodes_) {
+        RowReport report;
+        report.wire_curve = node.curve;
+        report.wire_coordinate = node.index;
+        report.gap = depth(at.table(node.curve, Site::node) + node.index * dimension_, node.radius);
+        for (std::size_t k = 0; k < normal_.size(); ++k) report.direction[k] = -normal_[k];
+        out.push_back(report);
+      }
+    });
+  }
+
  private:
   struct Node {
     int curve, index;

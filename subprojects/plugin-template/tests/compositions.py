@@ -74,6 +74,9 @@ def balance(tests, name, normal, load, overrides):
         tests.near(pull, sum(vessel) * normal[k] / length, 1e-6, f"{name}: balance of the vessel, axis {k}")
     tests.check(min(sum(rod), sum(vessel)) > 0.1, f"{name}: the plane pushes both curves: {sum(rod)}, {sum(vessel)} N")
     tests.check(min(rod + vessel) >= -1e-8, f"{name}: the plane does not pull")
+    contacts = result["contacts"]
+    tests.check(all(contact["vessel"] is None for contact in contacts), f"{name}: the plane is no vessel")
+    tests.near(sum(contact["force_N"] for contact in contacts), sum(rod) + sum(vessel), 1e-9, f"{name}: contacts")
     return result, rod, vessel
 
 
