@@ -51,6 +51,13 @@ constexpr ParameterDeclaration schema[] = {
      .default_text = "\"exact\"",
      .description = "second derivatives: exact, or a limited-memory quasi-Newton approximation",
      .choices = "exact|limited-memory"},
+    {.key = "ordering",
+     .type = ParameterType::choice,
+     .unit = "",
+     .default_text = "\"automatic\"",
+     .description = "the order that MUMPS eliminates in; \"pord\" is up to three times faster for a sliding wire with "
+                    "kinematics nodes on fine meshes, and slower for frames",
+     .choices = "automatic|amd|amf|pord|metis|qamd"},
     {.key = "step-guard",
      .type = ParameterType::scalar,
      .unit = "",
@@ -66,8 +73,17 @@ struct Settings {
   int max_iterations = 500;
   double time_limit = std::numeric_limits<double>::infinity();
   bool exact_hessian = true;
+  int ordering = 7;  // MUMPS' ICNTL(7)
   double guard = 0.5;
 };
+
+int ordering_of(const std::string& name) {
+  const std::pair<const char*, int> orderings[] = {{"amd", 0}, {"amf", 2}, {"pord", 4}, {"metis", 5}, {"qamd", 6}};
+  for (const auto& [known, number] : orderings) {
+    if (name == known) return number;
+  }
+  return 7;
+}
 
 /// MUMPS keeps static state: one Ipopt at a time in a process, from its construction until its destructors have run.
 std::mutex& ipopt_lock() {
@@ -275,6 +291,7 @@ class ChartProgram final : public Ipopt::TNLP {
 
 void set_options(Ipopt::OptionsList& options, const Settings& settings, bool warm, double barrier) {
   options.SetStringValue("linear_solver", "mumps");
+  options.SetIntegerValue("mumps_pivot_order", settings.ordering);
   options.SetStringValue("sb", "yes");
   options.SetIntegerValue("print_level", 0);
   options.SetIntegerValue("max_iter", settings.max_iterations + 1);
@@ -341,6 +358,7 @@ class IpoptSolver final : public Solver {
     settings_.max_iterations = static_cast<int>(parameters.integer("max-iterations"));
     if (parameters.has("time-limit")) settings_.time_limit = parameters.scalar("time-limit");
     settings_.exact_hessian = parameters.text("hessian") == "exact";
+    settings_.ordering = ordering_of(parameters.text("ordering"));
     const double guard = parameters.scalar("step-guard");
     settings_.guard = guard > 0.0 ? guard : std::numeric_limits<double>::infinity();
   }

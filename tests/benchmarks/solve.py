@@ -11,6 +11,7 @@ import sys
 import time
 
 REPEATS = 7
+KINEMATICS = ("edge-frames", "nodes")
 ARTERY = "vmr_0110/left_iliofemoral_to_aorta.csv"
 
 
@@ -59,6 +60,10 @@ def family(bowstring, name, scene, variants):
         line(f"{name}, {label}", result, seconds, error)
 
 
+def both(kinematics):
+    return {"vessel.iliac.kinematics": kinematics, "wire.lunderquist.kinematics": kinematics}
+
+
 def real_artery(bowstring, scenes):
     folder = os.environ.get("BOWSTRING_DATA")
     if not folder:
@@ -67,7 +72,9 @@ def real_artery(bowstring, scenes):
     geometry = (f'{{ type = "csv", file = "{folder}/{ARTERY}", coordinates = "RAS", smoothing = "0.3 mm", '
                 'nodes = 250 }')
     overrides = {"vessel.iliac.geometry": geometry, "vessel.iliac.radius": '{ column = "radius_mm" }'}
-    family(bowstring, "real iliofemoral artery", f"{scenes}/tortuous-iliac.toml", [("250 nodes", overrides)])
+    for kinematics in KINEMATICS:
+        family(bowstring, "real iliofemoral artery", f"{scenes}/tortuous-iliac.toml",
+               [(f"{kinematics}, 250 nodes", {**overrides, **both(kinematics)})])
 
 
 def main(bowstring, scenes):
@@ -76,16 +83,16 @@ def main(bowstring, scenes):
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     nodes = lambda count: {"vessel.iliac.geometry.nodes": count}
     family(bowstring, "planar, as published", f"{scenes}/planar-iliac.toml", [("80 nodes", nodes(80))])
-    for kinematics in ("edge-frames", "nodes"):
-        choice = {"vessel.iliac.kinematics": kinematics, "wire.lunderquist.kinematics": kinematics}
+    for kinematics in KINEMATICS:
+        choice = both(kinematics)
         variants = [(f"{kinematics}, {n} nodes", {**choice, **nodes(n)}) for n in (20, 40, 80, 160, 320)]
         family(bowstring, "planar, smooth", f"{scenes}/planar-iliac-smooth.toml", variants)
         if offers_solver(bowstring, "nlopt"):
             variants = [(f"{kinematics}, {n} nodes, nlopt", {**choice, **nodes(n), "solver.type": "nlopt"})
                         for n in (20, 40)]
             family(bowstring, "planar, smooth", f"{scenes}/planar-iliac-smooth.toml", variants)
-    family(bowstring, "helix", f"{scenes}/helical-iliac-full.toml",
-           [(f"{n} nodes", nodes(n)) for n in (30, 60, 120, 240)])
+        family(bowstring, "helix", f"{scenes}/helical-iliac-full.toml",
+               [(f"{kinematics}, {n} nodes", {**choice, **nodes(n)}) for n in (30, 60, 120, 240)])
     family(bowstring, "tortuous", f"{scenes}/tortuous-iliac.toml", [(f"{n} nodes", nodes(n)) for n in (100, 200, 400)])
     real_artery(bowstring, scenes)
 
