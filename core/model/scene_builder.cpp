@@ -8,6 +8,7 @@
 #include "core/model/manifold.hpp"
 #include "core/model/scene.hpp"
 #include "core/model/start_shape.hpp"
+#include "core/model/unheld_load.hpp"
 
 namespace bowstring {
 
@@ -45,6 +46,7 @@ class Builder {
     if (going()) declare_kinematics();
     if (going()) sample_laws();
     if (going()) declare_constraints();
+    if (going()) check_loads();
     if (!going()) scene_.reset();
     return {std::move(scene_), std::move(errors_), std::move(plugin_failure_)};
   }
@@ -102,6 +104,7 @@ class Builder {
   void sample_laws();
   bool sample_law(EnergyUse& use, LawUse& law, const ComponentChoice& choice);
   void declare_constraints();
+  void check_loads();
   Curve* find(const std::string& name) const {
     for (const auto& curve : scene_->curves) {
       if (curve->name == name) return curve.get();
@@ -681,6 +684,20 @@ void Builder::declare_constraints() {
     for (const std::string& warning : use.rows.warnings) scene_->warnings.push_back(warning);
     note_without_effect("constraint '" + table.label + "'", table.component.parameters, use.rows.without_effect);
     scene_->constraints.push_back(std::move(use));
+  }
+}
+
+void Builder::check_loads() {
+  for (const auto& curve : scene_->curves) {
+    const std::optional<UnheldLoad> load = unheld_load(*scene_, *curve);
+    if (!load) continue;
+    const ComponentChoice& choice = composition_.energies[at(load->energy)].component;
+    std::string force = number(load->force[0]);
+    for (int k = 1; k < composition_.dimension; ++k) force += ", " + number(load->force[k]);
+    error(choice.position,
+          "nothing holds '" + curve->name + "' against a dead force of (" + force +
+              ") N: it would move away without end, and no minimum exists",
+          "an end that is held, a constraint, or an energy of its position", "hold an end, or add an anchoring");
   }
 }
 

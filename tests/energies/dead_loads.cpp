@@ -86,6 +86,24 @@ TEST_CASE("loads that cannot act are refused in words, or warned of") {
                  "'at' is an arc length of 'wire', whose material slides"));
 }
 
+TEST_CASE("a dead force that nothing resists is refused: no minimum exists") {
+  const std::string up = "type = \"point-load\"\nforce = [0, 0.5]\nat = \"last\"\n";
+  const std::string unheld = edited(rod(up), R"(["clamped", "free"])", R"(["free", "free"])");
+  CHECK(
+      contains(refusal_of(unheld),
+               "nothing holds 'rod' against a dead force of (0, 0.5) N: it would move away without end, and no minimum "
+               "exists; expected an end that is held, a constraint, or an energy of its position; hold an end, or add "
+               "an anchoring"));
+  // Two that cancel, or tissue that holds the rod, leave a minimum.
+  CHECK(session_of_text(
+            edited(unheld, "[solver]",
+                   "[[energy]]\nname = \"down\"\non = \"rod\"\ntype = \"point-load\"\nforce = [0, -0.5]\nat = "
+                   "\"first\"\n[solver]")) != nullptr);
+  CHECK(session_of_text(
+            edited(unheld, "[solver]",
+                   "[[energy]]\non = \"rod\"\ntype = \"anchoring\"\nstiffness = \"0.1 N/mm^2\"\n[solver]")) != nullptr);
+}
+
 TEST_CASE("a rod without a vessel has a fixed length, and to let it slide is refused with the reason") {
   const std::string force = "type = \"point-load\"\nforce = [0, 1]\n";
   CHECK(session_of_text(rod(force))->scene->find("rod")->view.extension == Extension::fixed);
