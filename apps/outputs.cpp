@@ -1,11 +1,7 @@
 #include "apps/outputs.hpp"
 
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-
-#include <unistd.h>
 
 #include "apps/shell.hpp"
 #include "core/composition/defaults.hpp"
@@ -14,32 +10,7 @@
 
 namespace bowstring::apps {
 
-namespace {
-
 namespace fs = std::filesystem;
-
-/// Why a new file cannot be put there; empty where it can. Devices and pipes are never replaced.
-std::string obstacle(const std::string& file) {
-  std::error_code ignored;
-  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) return "it is no regular file";
-  fs::path folder = fs::path(file).parent_path();
-  if (folder.empty()) folder = ".";
-  return ::access(folder.c_str(), W_OK | X_OK) == 0 ? "" : std::strerror(errno);
-}
-
-/// One file by two names, through links or not.
-bool same_file(const std::string& a, const std::string& b) {
-  std::error_code ignored;
-  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored) || fs::equivalent(a, b, ignored);
-}
-
-/// Where a symbolic link leads, so that the link stays.
-std::string behind_links(const std::string& file) {
-  std::error_code ignored;
-  return fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored).string() : file;
-}
-
-}  // namespace
 
 int Outputs::prepare(const std::optional<std::string>& out, const std::vector<std::string>& write, Registry& registry) {
   int code = exit_converged;

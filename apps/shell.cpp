@@ -1,15 +1,13 @@
 #include "apps/shell.hpp"
 
 #include <cstdio>
-#include <cstdlib>
 
 namespace bowstring::apps {
 
 PluginHost make_host(const CommonOptions& common, const std::string& composition_file) {
-  PluginHostOptions options;
+  PluginHostOptions options = plugin_search();
   options.command_line_path = common.plugin_path;
-  if (!composition_file.empty()) options.composition_path = composition_plugin_path(composition_file);
-  if (const char* environment = std::getenv("BOWSTRING_PLUGIN_PATH")) options.environment_path = environment;
+  if (!composition_file.empty()) options.composition_path = composition_plugin_path({composition_file, {}});
   return PluginHost(options);
 }
 
@@ -30,7 +28,7 @@ bool parse_overrides(const std::vector<std::string>& set, std::vector<Override>&
 int report(const Refusal& refusal) {
   for (const InputError& error : refusal.errors) std::fprintf(stderr, "%s\n", error.text().c_str());
   if (!refusal.plugin_failure.ok()) complain(refusal.plugin_failure.text);
-  return refusal.errors.empty() ? exit_plugin_failed : exit_wrong_input;
+  return static_cast<int>(refusal.kind());
 }
 
 void complain(const std::string& text) { std::fprintf(stderr, "error: %s\n", text.c_str()); }

@@ -8,7 +8,7 @@
 
 #include "apps/outputs.hpp"
 #include "apps/shell.hpp"
-#include "core/result/document.hpp"
+#include "core/result/solved.hpp"
 
 namespace bowstring::apps {
 
@@ -95,28 +95,24 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
 
   std::signal(SIGINT, on_interrupt);
   Progress progress;
-  const Solution solution = bowstring::solve(*session, std::ref(progress));
+  const Solved solved = solve_and_read(*session, host, std::ref(progress));
   progress.finish();
   std::signal(SIGINT, SIG_DFL);
 
-  Readings readings;
-  if (Status status = read_solution(*session, solution, readings); !status.ok()) {
-    complain(status.text);
-  }
-  const std::string document = result_document(*session, solution, readings, host);
-  const int written = outputs.write(document);  // before anything is printed: a pipe may be closed by now
+  if (!solved.readable.ok()) complain(solved.readable.text);
+  const int written = outputs.write(solved.document);  // before anything is printed: a pipe may be closed by now
   if (options.json) {
-    std::fwrite(document.data(), 1, document.size(), stdout);
+    std::fwrite(solved.document.data(), 1, solved.document.size(), stdout);
   } else {
-    print_table(*session, solution, readings);
+    print_table(*session, solved.solution, solved.readings);
   }
-  for (const std::string& warning : solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : solved.solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (written != exit_converged) return written;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     complain("stdout cannot be written");
     return exit_fell_short;
   }
-  return solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
+  return solved.solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
 }
 
 }  // namespace bowstring::apps

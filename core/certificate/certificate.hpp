@@ -5,13 +5,11 @@
 #include <vector>
 
 #include "core/assembly/assembly.hpp"
+#include "core/certificate/verdict.hpp"
 #include "core/composition/composition.hpp"
 #include "core/contact/crossing.hpp"
 
 namespace bowstring {
-
-enum class Verdict : int { converged, invalid, stalled, infeasible, diverged, failed };
-const char* verdict_name(Verdict verdict) noexcept;
 
 /// The wire of one contact pair against the spline wall of its vessel.
 struct PairPenetration {

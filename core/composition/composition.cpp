@@ -108,9 +108,9 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
   return outcome;
 }
 
-std::vector<std::string> composition_plugin_path(const std::string& file) {
+std::vector<std::string> composition_plugin_path(const CompositionRequest& request) {
   Report ignored;
-  const std::optional<SourceTree> sources = read_sources({file, {}}, ignored);
+  const std::optional<SourceTree> sources = read_sources(request, ignored);
   return sources ? sources->plugin_path : std::vector<std::string>{};
 }
 

@@ -130,6 +130,8 @@ struct Override {
 struct CompositionRequest {
   std::string file;
   std::vector<Override> overrides;
+  /// The composition itself. `file`, which need not exist, is then what errors call it and where its paths start.
+  std::optional<std::string> text = std::nullopt;
 };
 
 struct CompositionOutcome {
@@ -142,6 +144,6 @@ struct CompositionOutcome {
 CompositionOutcome load_composition(const CompositionRequest& request, Registry& registry);
 
 /// The plugin path that a composition asks for, read before any registry exists; relative to the file, absolute here.
-std::vector<std::string> composition_plugin_path(const std::string& file);
+std::vector<std::string> composition_plugin_path(const CompositionRequest& request);
 
 }  // namespace bowstring

@@ -53,19 +53,20 @@ class ChainReader {
  public:
   explicit ChainReader(Report& report) : report_(report) {}
 
-  /// `from`: where the file is named; nowhere for the user's own file.
-  std::optional<SourceTree> read(const std::string& file, const Position& from) {
+  /// `from`: where the file is named; nowhere for the user's own file. `text`: in the file's place.
+  std::optional<SourceTree> read(const std::string& file, const Position& from,
+                                 const std::optional<std::string>& text = std::nullopt) {
     const auto source = std::make_shared<Source>();
     source->name = file;
     source->order = static_cast<int>(chain_.size());
     source->directory = absolute_path(file).parent_path();
 
-    const FileText content = read_file(file);
+    const FileText content = text ? FileText{*text, ""} : read_file(file);
     if (!content.problem.empty()) {
       report_unreadable(file, from, content.problem);
       return std::nullopt;
     }
-    chain_.push_back({file, canonical_path(file)});
+    chain_.push_back({file, text ? fs::path() : canonical_path(file)});
     std::optional<Node> root = read_toml(content.text, source, report_);
     if (!root) return std::nullopt;
     return compose(std::move(*root));
@@ -74,7 +75,7 @@ class ChainReader {
  private:
   struct Link {
     std::string name;
-    fs::path canonical;
+    fs::path canonical;  // "" of a text in no file
   };
 
   void report_unreadable(const std::string& file, const Position& from, const std::string& problem) {
@@ -90,7 +91,7 @@ class ChainReader {
   std::optional<SourceTree> compose(Node root) {
     check_schema(root);
     SourceTree result;
-    result.files.push_back(chain_.back().canonical.string());
+    if (!chain_.back().canonical.empty()) result.files.push_back(chain_.back().canonical.string());
     read_plugin_path(root, result.plugin_path);
     if (const Entry* base = root.find("base")) {
       std::optional<SourceTree> below = read_base(base->value);
@@ -207,7 +208,7 @@ void apply_request(Node& root, const CompositionRequest& request, Report& report
 }  // namespace
 
 std::optional<SourceTree> read_sources(const CompositionRequest& request, Report& report) {
-  std::optional<SourceTree> tree = ChainReader(report).read(request.file, {});
+  std::optional<SourceTree> tree = ChainReader(report).read(request.file, {}, request.text);
   if (tree) apply_request(tree->root, request, report);
   return tree;
 }

@@ -15,7 +15,7 @@ struct ComponentOrigin {
 };
 
 /// What the kernel knows of plugins: names first, components on demand. The plugin host implements it; the kernel
-/// opens no library itself.
+/// opens no library itself. Every member may be called from several threads at once.
 class Registry {
  public:
   virtual ~Registry() = default;

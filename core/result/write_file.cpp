@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -11,13 +12,33 @@ namespace bowstring {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 Status problem(const std::string& what, const std::string& file) {
   return Status::failure(Code::invalid_input, what + " '" + file + "': " + std::strerror(errno));
 }
 
 }  // namespace
 
-std::string temporary_name(const std::string& file) { return file + ".part-" + std::to_string(::getpid()); }
+std::string obstacle(const std::string& file) {
+  std::error_code ignored;
+  if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) return "it is no regular file";
+  fs::path folder = fs::path(file).parent_path();
+  if (folder.empty()) folder = ".";
+  return ::access(folder.c_str(), W_OK | X_OK) == 0 ? "" : std::strerror(errno);
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code ignored;
+  return fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored) || fs::equivalent(a, b, ignored);
+}
+
+std::string behind_links(const std::string& file) {
+  std::error_code ignored;
+  return fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored).string() : file;
+}
+
+std::string temporary_name(const std::string& file) { return file + ".part-" + std::to_string(::gettid()); }
 
 Status publish_file(const std::string& temporary, const std::string& file) {
   if (std::rename(temporary.c_str(), file.c_str()) == 0) return {};

@@ -6,7 +6,16 @@
 
 namespace bowstring {
 
-/// A name beside `file` that nobody else uses, for content that is renamed when it is whole.
+/// Why a new file cannot be put there; "" where it can. Devices and pipes are never replaced.
+std::string obstacle(const std::string& file);
+
+/// One file by two names, through links or not.
+bool same_file(const std::string& a, const std::string& b);
+
+/// Where a symbolic link leads, so that the link stays.
+std::string behind_links(const std::string& file);
+
+/// A name beside `file` that no other thread of any process uses, for content that is renamed when it is whole.
 std::string temporary_name(const std::string& file);
 
 /// Writes `content` to `file`, whole or not at all: to a temporary name in the same folder, synced, then renamed.

@@ -9,6 +9,7 @@
 #include "core/certificate/certificate.hpp"
 #include "core/composition/composition.hpp"
 #include "core/interfaces/enforcement.hpp"
+#include "core/session/refusal.hpp"
 
 namespace bowstring {
 
@@ -17,13 +18,6 @@ struct Seconds {
   double setup = 0.0;  ///< scene built, patterns found
   double solve = 0.0;
   double total = 0.0;
-};
-
-/// What went wrong before anything could be solved. Errors as values: nothing is thrown to the caller.
-struct Refusal {
-  std::vector<InputError> errors;  ///< the input is wrong
-  Status plugin_failure;           ///< a known plugin could not be loaded or used
-  bool any() const noexcept { return !errors.empty() || !plugin_failure.ok(); }
 };
 
 /// A composition made ready to be solved.

@@ -1,6 +1,9 @@
 #include "plugins/host/plugin_host.hpp"
 
+#include <dlfcn.h>
+
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "core/composition/nearest.hpp"
@@ -45,15 +48,22 @@ std::string running_executable() {
   return fs::read_symlink("/proc/self/exe", error).string();
 }
 
+PluginHostOptions plugin_search(std::vector<std::string> composition_path) {
+  PluginHostOptions options;
+  options.composition_path = std::move(composition_path);
+  if (const char* environment = std::getenv("BOWSTRING_PLUGIN_PATH")) options.environment_path = environment;
+  return options;
+}
+
 PluginHost::PluginHost(const PluginHostOptions& options) {
   for (const std::string& folder : options.command_line_path) search_folder(folder);
   for (const std::string& folder : options.composition_path) search_folder(folder);
   for (const std::string& folder : split(options.environment_path, ':')) search_folder(folder);
-  if (!options.executable_path.empty()) search_binary(options.executable_path);
+  if (!options.executable_path.empty() && !search_binary(options.executable_path)) search_library();
   note_duplicates();
 }
 
-void PluginHost::search_binary(const std::string& executable) {
+bool PluginHost::search_binary(const std::string& executable) {
   const fs::path folder = fs::path(executable).parent_path();
   const fs::path list = folder / plugin_list_name;
   const fs::path installed = folder / BOWSTRING_PLUGINS_FROM_BINARY;
@@ -63,6 +73,24 @@ void PluginHost::search_binary(const std::string& executable) {
     take_list(list.string());
   } else if (fs::exists(installed, error)) {
     search_folder(installed.string());
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// An installed library stands above its plugins, that of a build two folders below the build's list.
+void PluginHost::search_library() {
+  Dl_info self;
+  const auto* here = reinterpret_cast<const void*>(&running_executable);
+  if (::dladdr(here, &self) == 0 || self.dli_fname == nullptr) return;
+  const fs::path folder = fs::path(canonical_name(self.dli_fname)).parent_path();
+  const fs::path installed = folder / BOWSTRING_PLUGINS_FROM_LIBRARY;
+  std::error_code error;
+  if (fs::exists(installed, error)) {
+    search_folder(installed.string());
+  } else {
+    search_binary((folder.parent_path().parent_path() / "bowstring").string());
   }
 }
 
@@ -143,6 +171,7 @@ const ComponentDescriptor* PluginHost::find(Kind kind, const std::string& name, 
     return nullptr;
   }
   Library& library = libraries_[libraries->front()];
+  const std::lock_guard<std::mutex> lock(opening_);
   status = open(library);
   if (!status.ok()) return nullptr;
   for (int i = 0; i < library.open->component_count; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,17 +17,24 @@ std::string running_executable();
 /// Where plugins are looked for, in this order. Each entry is a folder: the sidecars in it are taken, and those that
 /// a `bowstring-plugins.json` in it lists. The working directory counts only where an entry names it.
 struct PluginHostOptions {
-  std::vector<std::string> command_line_path;          ///< --plugin-path
-  std::vector<std::string> composition_path;           ///< `plugin-path` of the composition, absolute
-  std::string environment_path;                        ///< BOWSTRING_PLUGIN_PATH: folders separated by colons
-  std::string executable_path = running_executable();  ///< the binary whose own plugins come last; "": none
+  std::vector<std::string> command_line_path;  ///< --plugin-path
+  std::vector<std::string> composition_path;   ///< `plugin-path` of the composition, absolute
+  std::string environment_path;                ///< BOWSTRING_PLUGIN_PATH: folders separated by colons
+  /// The binary whose own plugins come last. One that has none, a program of somebody else's, gets those that were
+  /// built or installed with this library. "": none at all.
+  std::string executable_path = running_executable();
 };
 
+/// Where the command looks: `BOWSTRING_PLUGIN_PATH` of the environment, then what belongs to the binary or the library,
+/// all of it after `composition_path`.
+PluginHostOptions plugin_search(std::vector<std::string> composition_path = {});
+
 /// Finds plugins by their sidecars and opens a library only when one of its components is asked for. Before that its
-/// ABI tag is compared, in the sidecar and in the file. Libraries stay open. Not for concurrent use.
+/// ABI tag is compared, in the sidecar and in the file. Libraries stay open. One host may serve any number of threads
+/// at once, and what it has answered is valid for the rest of the process.
 class PluginHost final : public Registry {
  public:
-  explicit PluginHost(const PluginHostOptions& options);
+  explicit PluginHost(const PluginHostOptions& options = plugin_search());
 
   std::vector<std::string> names(Kind kind) const override;
   /// `failed` also where two libraries offer the name, and for a plugin of this project that was not built.
@@ -50,7 +58,8 @@ class PluginHost final : public Registry {
   using Name = std::pair<Kind, std::string>;
 
   void search_folder(const std::string& path);
-  void search_binary(const std::string& executable);
+  bool search_binary(const std::string& executable);
+  void search_library();
   void take_list(const std::string& file);
   void take_sidecar(const std::string& path);
   void note_duplicates();
@@ -65,6 +74,7 @@ class PluginHost final : public Registry {
   std::map<Name, std::vector<std::size_t>> offers_;  ///< indices into libraries_
   std::vector<PluginNotBuilt> not_built_;
   std::vector<std::string> problems_;
+  std::mutex opening_;  ///< guards Library::open, the only thing that changes after the constructor
 };
 
 }  // namespace bowstring

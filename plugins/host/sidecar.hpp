@@ -17,7 +17,9 @@ struct OfferedComponent {
   std::string name;
   std::string description;
 
-  friend bool operator==(const OfferedComponent&, const OfferedComponent&) = default;
+  friend bool operator==(const OfferedComponent& a, const OfferedComponent& b) {
+    return a.kind == b.kind && a.name == b.name && a.description == b.description;
+  }
 };
 
 /// `NAME.bowstring.json`, which the build writes beside each plugin library:

@@ -91,6 +91,33 @@ std::mutex& ipopt_lock() {
   return lock;
 }
 
+/// Holds that lock. A progress function that starts another run would wait for itself; it is refused instead.
+class IpoptTurn {
+ public:
+  IpoptTurn() {
+    if (taken()) {
+      throw StatusError(Code::unsupported,
+                        "a progress function of Ipopt has started another solve by Ipopt, which "
+                        "solves one problem at a time; solve after it has returned");
+    }
+    ipopt_lock().lock();
+    taken() = true;
+  }
+  ~IpoptTurn() {
+    taken() = false;
+    ipopt_lock().unlock();
+  }
+  IpoptTurn(const IpoptTurn&) = delete;
+  IpoptTurn& operator=(const IpoptTurn&) = delete;
+
+ private:
+  /// By this thread.
+  static bool& taken() {
+    static thread_local bool value = false;
+    return value;
+  }
+};
+
 /// Why the intermediate callback ended a run.
 enum class Stop { none, epoch, iterations, time, user };
 
@@ -386,7 +413,7 @@ class IpoptSolver final : public Solver {
 
  private:
   void run(Problem& problem, Span<const double> start, const SolverContext& context, SolverResult& out) const {
-    const std::lock_guard<std::mutex> lock(ipopt_lock());
+    const IpoptTurn turn;
     const auto begin = Clock::now();
     out.q.assign(start.begin(), start.end());
     problem.set_guard(settings_.guard);

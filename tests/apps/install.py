@@ -129,9 +129,27 @@ class Installation:
         tag = self.ask_pkg_config("--variable=abi_tag", "bowstring")
         told = self.run("./program")
         self.check(told == f"energy {tag}", "a program links against the installed library", told)
-        self.compile("host", HOST_PROGRAM, "bowstring-host", "-std=c++20")
+        self.compile("host", HOST_PROGRAM, "bowstring-host", "-std=c++17")
         told = self.run("./host", self.ask_pkg_config("--variable=plugindir", "bowstring"))
         self.check(told == "found", "a program opens the installed plugins", told)
+
+    def in_process(self):
+        """The program of docs/in-process.md, with nothing but what pkg-config says."""
+        page = (self.source / "docs" / "in-process.md").read_text()
+        sweep = re.search(r"```cpp\n(// file: sweep\.cpp.*?)```", page, re.DOTALL)
+        if not self.check(sweep, "docs/in-process.md has a program"):
+            return
+        self.compile("sweep", sweep[1], "bowstring-host", "-std=c++17")
+        rows = [line.split(",") for line in self.run("./sweep", "scenes/planar-iliac-smooth.toml").splitlines()]
+        self.check(rows[0] == ["tension_N", "peak_displacement_mm", "contact_force_N"], "its header", rows[0])
+        peaks = [float(row[1]) for row in rows[1:]]
+        self.check([row[0] for row in rows[1:]] == [str(tension) for tension in range(1, 21)] and peaks == sorted(set(peaks))
+                   and peaks[0] > 1.0, "the vessel moves further for every N", rows)
+        peak = json.loads((self.work / "result.json").read_text())["quantities"]["peak_displacement_mm"]
+        self.check(rows[10][1] == f"{peak:.3f}", "as the command says for 10 N", f"{rows[10]}, {peak}")
+        needed = self.run("c++", "-std=c++17", "-M", *shlex.split(self.ask_pkg_config("--cflags", "bowstring-host")), "sweep.cpp")
+        self.check("simulation.hpp" in needed and not re.search(r"Eigen|nlohmann|toml\+\+|boost", needed),
+                   "the public headers need no other library", needed)
 
 
 def main(source, build):
@@ -142,6 +160,7 @@ def main(source, build):
             installation.plugins()
             installation.solve()
             installation.programs()
+            installation.in_process()
     print(f"{installation.passed} passed, {installation.failed} failed")
     return 1 if installation.failed else 0
 

@@ -56,9 +56,9 @@ TEST_CASE("a chain of bases, each relative to its own file, the nearest to the u
   CHECK(scene.vessels[0].geometry.parameters.text("coordinates") == "RAS");
   CHECK(scene.solver.parameters.scalar("tolerance") == 1e-6);
   CHECK(scene.solver.parameters.integer("max-iterations") == 9);
-  CHECK(composition_plugin_path("third.toml") ==
+  CHECK(composition_plugin_path({"third.toml", {}}) ==
         Texts{(bench.folder() / "x").string(), "/y", (bench.folder() / "a/plug").string()});
-  CHECK(composition_plugin_path("absent.toml").empty());
+  CHECK(composition_plugin_path({"absent.toml", {}}).empty());
 }
 
 TEST_CASE("an error in a base stands at its place in the base, before none of the user's own") {
