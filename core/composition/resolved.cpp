@@ -24,6 +24,8 @@ class NumberWriter {
     if (unit_.empty()) return number;
     return Json(number).dump() + " " + unit_;
   }
+  /// "" where a number's unit goes without saying.
+  const std::string& unit() const { return unit_; }
 
  private:
   std::string unit_;
@@ -50,6 +52,7 @@ Json profile_json(const Profile& profile, const NumberWriter& number) {
       return result;
     case Profile::Form::column:
       result["column"] = profile.column;
+      if (!number.unit().empty()) result["unit"] = number.unit();
       return result;
   }
   return result;

@@ -46,6 +46,7 @@ struct Curve {
   std::vector<double> radius;   ///< nodal; empty where none is known
   std::vector<PointData> data;  ///< the geometry's, one value per node
   std::vector<std::string> label;
+  std::vector<double> state1_tangent[2];      ///< unit, three numbers: of the geometry, whatever tangent is held
   std::string end_text[2];                    ///< what the ends hold, for people
   std::string end_position[2];                ///< where the composition says so
   int along = -1;                             ///< the vessel that a wire starts along …

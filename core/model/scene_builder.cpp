@@ -96,6 +96,7 @@ class Builder {
   void add_wire(const WireTable& table);
   bool start_wire(Curve& wire, const Curve& vessel, const WireTable& table);
   bool grade(Curve& wire, const WireTable& table);
+  void regrade(Curve& curve, const std::vector<double>& share) const;
   Extension wire_extension(const Curve& wire, const WireTable& table);
   void declare_energies();
   void note_without_effect(const std::string& owner, const ParameterSet& parameters,
@@ -220,6 +221,7 @@ void Builder::set_ends(Curve& curve, const EndTable* ends) {
     curve.end_position[e] = table.position;
     end.rotation_held = table.rotation_held;
     end.edge_held = table.edge_held;
+    curve.state1_tangent[e] = end_tangent(curve, {}, e, tangents_[e]);
     const std::vector<double> tangent = end_tangent(curve, table, e, tangents_[e]);
     double squared = 0.0;
     for (const double t : tangent) squared += t * t;
@@ -300,14 +302,11 @@ void Builder::hold_axes(const Curve& curve) {
 /// The start takes the ends where they are moved to, and what lies between in proportion to its arc length.
 void Builder::spread_moves(Curve& curve) const {
   const int d = composition_.dimension;
-  const int last = curve.view.nodes - 1;
-  for (int e = 0; e < 2; ++e) {
-    for (int i = 0; i <= last; ++i) {
-      const int from_end = e == 0 ? i : last - i;
-      const double share = curve.arc[at(i)] / curve.arc.back();
-      const bool whole = from_end == 0 || (from_end == 1 && curve.view.end[e].edge_held);
-      const double part = whole ? 1.0 : (e == 0 ? 1.0 - share : share);
-      for (int k = 0; k < d; ++k) curve.start[at(i * d + k)] += part * moves_[e][k];
+  const Ramp ramp(curve.view, curve.arc);
+  for (int i = 0; i < curve.view.nodes; ++i) {
+    const double share = ramp.at(curve.arc[at(i)]);
+    for (int k = 0; k < d; ++k) {
+      curve.start[at(i * d + k)] += (1.0 - share) * moves_[0][k] + share * moves_[1][k];
     }
   }
 }
@@ -405,7 +404,8 @@ void Builder::add_vessel(const VesselTable& table) {
   curve->view.extension = Extension::stretching;
   curve->view.rigid = table.rigid;
 
-  if (!read_geometry(*curve, table.geometry, table.end)) return;
+  const EndTable ignored[2];
+  if (!read_geometry(*curve, table.geometry, table.rigid ? ignored : table.end)) return;
   finish_view(*curve);
 
   Profile radius;
@@ -459,7 +459,7 @@ bool Builder::start_wire(Curve& wire, const Curve& vessel, const WireTable& tabl
   }
   wire.view.dimension = d;
   wire.view.nodes = table.nodes > 0 ? table.nodes : vessel.view.nodes;
-  for (int e = 0; e < 2; ++e) tangents_[e].assign(vessel.view.end[e].tangent, vessel.view.end[e].tangent + 3);
+  for (int e = 0; e < 2; ++e) tangents_[e] = vessel.state1_tangent[e];
   if (table.span.empty() && table.spacing.empty() && wire.view.nodes == vessel.view.nodes) {
     wire.reference = vessel.reference;
   } else {
@@ -484,6 +484,23 @@ bool Builder::grade(Curve& wire, const WireTable& table) {
         "one for each of its " + std::to_string(edges) + " edges",
         "write " + std::to_string(edges) + " numbers, or change its nodes");
   return false;
+}
+
+/// The nodes of a geometry moved along it, with its data and labels.
+void Builder::regrade(Curve& curve, const std::vector<double>& share) const {
+  const std::vector<double> before = polyline_arc(curve.reference, composition_.dimension);
+  curve.reference = resample(curve.reference, composition_.dimension, share).points;
+  curve.start = curve.reference;
+  for (PointData& data : curve.data) {
+    const std::vector<double> given = data.value;
+    for (std::size_t i = 0; i < share.size(); ++i) {
+      data.value[i] = interpolate_linearly(before, given, share[i] * before.back());
+    }
+  }
+  const std::vector<std::string> label = curve.label;
+  for (std::size_t i = 0; i < label.size(); ++i) {
+    curve.label[i] = label[nearest_index(before, share[i] * before.back())];
+  }
 }
 
 Extension Builder::wire_extension(const Curve& wire, const WireTable& table) {
@@ -511,10 +528,7 @@ void Builder::add_wire(const WireTable& table) {
     if (!read_geometry(*curve, *table.geometry, table.end)) return;
     if (!table.spacing.empty()) {
       if (!grade(*curve, table)) return;
-      curve->reference =
-          resample(curve->reference, composition_.dimension, cumulative_shares(table.spacing, curve->view.nodes - 1))
-              .points;
-      curve->start = curve->reference;
+      regrade(*curve, cumulative_shares(table.spacing, curve->view.nodes - 1));
     }
   } else if (vessel != nullptr) {
     if (!start_wire(*curve, *vessel, table)) return;

@@ -41,6 +41,77 @@ Resampled resample_edges(const std::vector<double>& points, int d, const std::ve
   return out;
 }
 
+bool is_held(const CurveView& view, int end) {
+  const bool* held = view.end[end].position_held;
+  return std::any_of(held, held + view.dimension, [](bool axis) { return axis; });
+}
+
+Vector3 edge_vector(const std::vector<double>& points, int d, int edge) {
+  Vector3 out;
+  for (int a = 0; a < d; ++a) out[a] = points[at((edge + 1) * d + a)] - points[at(edge * d + a)];
+  return out;
+}
+
+void put_together(const std::vector<Vector3>& edges, bool from_last, int d, std::vector<double>& points) {
+  const int count = static_cast<int>(edges.size());
+  for (int k = 0; k < count; ++k) {
+    const int i = from_last ? count - 1 - k : k;
+    for (int a = 0; a < d; ++a) {
+      double& here = points[at((from_last ? i : i + 1) * d + a)];
+      here = points[at((from_last ? i + 1 : i) * d + a)] + (from_last ? -1.0 : 1.0) * edges[at(i)][a];
+    }
+  }
+}
+
+/// Turns the edges by α sin πu + β sin 2πu more, u the share of the length, so that they span what they did before they
+/// were turned: Newton's method for (α, β) with damping. Edges keep their lengths and, together, their whole turns.
+/// Leaves everything as it is where it finds no such turn.
+void close_in_plane(const std::vector<double>& points, const std::vector<double>& share, std::vector<Vector3>& edges,
+                    std::vector<double>& edge_turn) {
+  double length = 0.0;
+  Vector3 target;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    target += edge_vector(points, 2, static_cast<int>(i));
+    length += norm(edges[i]);
+  }
+  const auto shape = [&](std::size_t i, int k) { return std::sin((k + 1) * M_PI * share[i]); };
+  const auto turned = [&](std::size_t i, const double(&by)[2]) {
+    return lie::exp(Vector3{{0.0, 0.0, by[0] * shape(i, 0) + by[1] * shape(i, 1)}}) * edges[i];
+  };
+  const auto miss = [&](const double(&by)[2]) {
+    Vector3 sum = -target;
+    for (std::size_t i = 0; i < edges.size(); ++i) sum += turned(i, by);
+    return sum;
+  };
+  double by[2] = {0.0, 0.0};
+  Vector3 gap = miss(by);
+  for (int iteration = 0; iteration < 200 && norm(gap) > 1e-12 * length; ++iteration) {
+    Vector3 column[2];
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      const Vector3 e = turned(i, by);
+      for (int k = 0; k < 2; ++k) column[k] += shape(i, k) * Vector3{{-e[1], e[0], 0.0}};
+    }
+    const double determinant = column[0][0] * column[1][1] - column[0][1] * column[1][0];
+    const double step[2] = {(gap[1] * column[1][0] - gap[0] * column[1][1]) / determinant,
+                            (gap[0] * column[0][1] - gap[1] * column[0][0]) / determinant};
+    bool better = false;
+    for (double damping = std::min(1.0, 0.5 / std::hypot(step[0], step[1])); !better && damping > 1e-6;
+         damping *= 0.5) {
+      const double trial[2] = {by[0] + damping * step[0], by[1] + damping * step[1]};
+      const Vector3 there = miss(trial);
+      better = norm(there) < norm(gap);
+      if (better) by[0] = trial[0], by[1] = trial[1], gap = there;
+    }
+    if (!better) break;
+  }
+  if (!(norm(gap) <= 1e-6 * length)) return;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    const Vector3 e = turned(i, by);
+    edge_turn[i] += by[0] * shape(i, 0) + by[1] * shape(i, 1);
+    edges[i] = e;
+  }
+}
+
 }  // namespace
 
 Resampled resample(const std::vector<double>& points, int dimension, const std::vector<double>& share) {
@@ -66,43 +137,47 @@ Matrix3 end_axes(const double (&tangent)[3], int dimension) {
   return {{tangent[0], -tangent[1], 0.0, tangent[1], tangent[0], 0.0, 0.0, 0.0, 1.0}};
 }
 
+Ramp::Ramp(const CurveView& view, const std::vector<double>& arc)
+    : begin_(view.end[0].edge_held ? arc[1] : arc.front()),
+      end_(view.end[1].edge_held ? arc[arc.size() - 2] : arc.back()) {}
+
+double Ramp::at(double arc) const noexcept {
+  if (arc <= begin_) return 0.0;
+  return arc >= end_ ? 1.0 : (arc - begin_) / (end_ - begin_);
+}
+
 void spread_turns(const Turn (&turn)[2], const CurveView& view, const std::vector<double>& arc,
                   std::vector<double>& points, std::vector<double>& edge_turn) {
-  const int d = view.dimension, last = view.nodes - 1;
-  const auto held = [&](int end) {
-    return std::any_of(view.end[end].position_held, view.end[end].position_held + d, [](bool axis) { return axis; });
-  };
+  const int d = view.dimension, edges = view.nodes - 1;
+  const Ramp ramp(view, arc);
   // A rotation about the tangent twists, whichever way it is written.
   const auto twist = [&](int end) {
     return turn[end].twist + dot(turn[end].rotation, Vector3::load(view.end[end].tangent));
   };
-  const bool from_last = held(1) && !held(0);
-  std::vector<double> turned = points;
-  edge_turn.assign(at(last), 0.0);
-  for (int k = 0; k < last; ++k) {
-    const int i = from_last ? last - 1 - k : k;
-    const double share = 0.5 * (arc[at(i)] + arc[at(i + 1)]) / arc.back();
+  std::vector<Vector3> turned(at(edges));
+  std::vector<double> middle(at(edges));
+  edge_turn.assign(at(edges), 0.0);
+  for (int i = 0; i < edges; ++i) {
+    const double share = ramp.at(0.5 * (arc[at(i)] + arc[at(i + 1)]));
     const Vector3 first = (1.0 - share) * turn[0].rotation, second = share * turn[1].rotation;
+    middle[at(i)] = share;
     edge_turn[at(i)] = d == 2 ? first[2] + second[2] : (1.0 - share) * twist(0) + share * twist(1);
-    Vector3 edge;
-    for (int a = 0; a < d; ++a) edge[a] = points[at((i + 1) * d + a)] - points[at(i * d + a)];
-    edge = (lie::exp(second) * lie::exp(first)) * edge;
-    for (int a = 0; a < d; ++a) {
-      if (from_last) {
-        turned[at(i * d + a)] = turned[at((i + 1) * d + a)] - edge[a];
-      } else {
-        turned[at((i + 1) * d + a)] = turned[at(i * d + a)] + edge[a];
-      }
-    }
+    turned[at(i)] = (lie::exp(second) * lie::exp(first)) * edge_vector(points, d, i);
   }
-  if (held(0) && held(1)) {
-    for (int a = 0; a < d; ++a) {
-      const double gap = points[at(last * d + a)] - turned[at(last * d + a)];
-      for (int i = 0; i <= last; ++i) turned[at(i * d + a)] += gap * arc[at(i)] / arc.back();
-      turned[at(last * d + a)] = points[at(last * d + a)];
-    }
+  const bool first_held = is_held(view, 0), last_held = is_held(view, 1);
+  const std::vector<double> before = points;
+  if (first_held && last_held && d == 2) {
+    // Moves have stretched or shortened the edges; with their own lengths there is room to turn.
+    for (int i = 0; i < edges; ++i) turned[at(i)] *= (arc[at(i + 1)] - arc[at(i)]) / norm(turned[at(i)]);
+    close_in_plane(before, middle, turned, edge_turn);
   }
-  points = turned;
+  put_together(turned, last_held && !first_held, d, points);
+  if (!first_held || !last_held) return;
+  for (int a = 0; a < d; ++a) {
+    const double gap = before[at(edges * d + a)] - points[at(edges * d + a)];
+    for (int i = 0; i <= edges; ++i) points[at(i * d + a)] += gap * ramp.at(arc[at(i)]);
+    points[at(edges * d + a)] = before[at(edges * d + a)];
+  }
 }
 
 }  // namespace bowstring

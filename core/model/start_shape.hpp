@@ -22,6 +22,17 @@ std::vector<double> cumulative_shares(const std::vector<double>& fraction, int e
 /// and its left normal.
 Matrix3 end_axes(const double (&tangent)[3], int dimension);
 
+/// How far along the movable part of a curve: 0 up to where the first end holds it, 1 from where the last one does,
+/// linear in State 1 arc length between. A held edge belongs to its end as a whole.
+class Ramp {
+ public:
+  Ramp(const CurveView& view, const std::vector<double>& arc);
+  double at(double arc) const noexcept;
+
+ private:
+  double begin_, end_;
+};
+
 /// A prescribed rotation in global axes, whole turns counted.
 struct Turn {
   Vector3 rotation;    ///< rotation vector; in the plane its third component
@@ -29,7 +40,8 @@ struct Turn {
 };
 
 /// The curve whose edges are turned in proportion to their distance from the other end, put together again from the
-/// first node, or from the last one where that alone is held; where both are held the gap is spread along it. Writes
+/// first node, or from the last one where that alone is held. Where both are held the edges are turned a little more,
+/// smoothly, so that the curve closes (in the plane; whole turns are kept so), or the gap is spread along it. Writes
 /// points and each edge's turn against State 1 (angle in the plane, twist in space). `arc`: of State 1.
 void spread_turns(const Turn (&turn)[2], const CurveView& view, const std::vector<double>& arc,
                   std::vector<double>& points, std::vector<double>& edge_turn);

@@ -7,11 +7,8 @@ namespace bowstring {
 
 namespace {
 
-bool ends_hold(const Curve& curve) {
-  if (curve.view.rigid) return true;
-  return std::any_of(curve.view.end, curve.view.end + 2, [](const EndCondition& end) {
-    return std::any_of(end.position_held, end.position_held + 3, [](bool held) { return held; });
-  });
+bool end_holds(const Curve& curve, int axis) {
+  return curve.view.end[0].position_held[axis] || curve.view.end[1].position_held[axis];
 }
 
 bool rows_hold(const Scene& scene, const Curve& curve) {
@@ -48,7 +45,7 @@ void add_force(const Curve& curve, const LawUse& law, double (&force)[3]) {
 }  // namespace
 
 std::optional<UnheldLoad> unheld_load(const Scene& scene, const Curve& curve) {
-  if (ends_hold(curve) || rows_hold(scene, curve) || curve.site(Site::node) == nullptr) return std::nullopt;
+  if (curve.view.rigid || rows_hold(scene, curve) || curve.site(Site::node) == nullptr) return std::nullopt;
   UnheldLoad out;
   for (std::size_t e = 0; e < scene.energies.size(); ++e) {
     const EnergyUse& use = scene.energies[e];
@@ -59,6 +56,9 @@ std::optional<UnheldLoad> unheld_load(const Scene& scene, const Curve& curve) {
       out.energy = static_cast<int>(e);
       add_force(curve, law, out.force);
     }
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (end_holds(curve, axis)) out.force[axis] = 0.0;
   }
   if (out.energy < 0 || std::hypot(out.force[0], out.force[1], out.force[2]) == 0.0) return std::nullopt;
   return out;

@@ -28,8 +28,11 @@ Vector3 binormal(const Curve& curve, const std::vector<double>& points, int node
   const auto edge = [&](int i) {
     return Vector3::load(points.data() + at(3 * (i + 1))) - Vector3::load(points.data() + at(3 * i));
   };
-  const Vector3 before = node > 0 ? edge(node - 1) : Vector3::load(curve.view.end[0].tangent);
-  const Vector3 after = node < last ? edge(node) : Vector3::load(curve.view.end[1].tangent);
+  const auto held = [&](int e) {
+    return lie::exp(Vector3::load(curve.view.end[e].turn)) * Vector3::load(curve.view.end[e].tangent);
+  };
+  const Vector3 before = node > 0 ? edge(node - 1) : held(0);
+  const Vector3 after = node < last ? edge(node) : held(1);
   const Vector3 normal = cross(before, after);
   const double length = norm(normal);
   return length > 0.0 ? normal / length : normal;
@@ -111,6 +114,21 @@ CurveRecord read_curve(Session& session, const Solution& solution, const Curve& 
   return out;
 }
 
+bool is_same_place(const ContactRecord& a, const ContactRecord& b) {
+  return a.wire == b.wire && a.vessel == b.vessel && a.wire_coordinate == b.wire_coordinate;
+}
+
+/// Bilateral rows of one place are components of one force.
+void add_force(const ContactRecord& component, ContactRecord& contact) {
+  Vector3 force;
+  for (int k = 0; k < 3; ++k) {
+    force[k] = contact.force * contact.direction[k] + component.force * component.direction[k];
+  }
+  contact.gap = std::hypot(contact.gap, component.gap);
+  contact.force = norm(force);
+  for (int k = 0; k < 3 && contact.force > 0.0; ++k) contact.direction[k] = force[k] / contact.force;
+}
+
 Status read_contacts(Session& session, const Solution& solution, Readings& out) {
   for (const RowOrigin& group : session.assembly->row_origins()) {
     if (group.constraint < 0) continue;
@@ -140,10 +158,20 @@ Status read_contacts(Session& session, const Solution& solution, Readings& out) 
       contact.force = bilateral ? std::fabs(force) : force;
       for (int k = 0; k < 3; ++k)
         contact.direction[k] = bilateral && force < 0.0 ? -report.direction[k] : report.direction[k];
-      out.contacts.push_back(contact);
+      if (bilateral && r > 0 && is_same_place(out.contacts.back(), contact)) {
+        add_force(contact, out.contacts.back());
+      } else {
+        out.contacts.push_back(contact);
+      }
     }
   }
   return {};
+}
+
+/// In space, the axis of an edge's angle.
+Vector3 edge_tangent(const CurveRecord& record, int edge) {
+  const double* p = record.points.data() + at(3 * edge);
+  return normalized(Vector3::load(p + 3) - Vector3::load(p));
 }
 
 /// Ends that are held along axes of their own have rows instead of eliminated coordinates.
@@ -198,7 +226,8 @@ Status read_supports(Session& session, const Solution& solution, Readings& out) 
             support.moment[k] += arm[(k + 1) % 3] * g[(k + 2) % 3] - arm[(k + 2) % 3] * g[(k + 1) % 3];
           }
         } else if (e.manifold == Manifold::circle) {
-          support.moment[2] += g[0];
+          const Vector3 axis = d == 2 ? Vector3::unit(2) : edge_tangent(record, std::min(i, curve->view.nodes - 2));
+          for (int k = 0; k < 3; ++k) support.moment[k] += g[0] * axis[k];
         } else {
           const Vector3 body = body_rotation_vector(e.manifold, g);
           const Vector3 moment = lie::Rotation::load(solution.q.data() + e.coordinate) * body;

@@ -211,8 +211,30 @@ Status Nodes::declare(const CurveView& curve, const Needs& needs, KinematicsDecl
     declare_fields(needs, out);
     declare_sites(out);
     out.closure_name = "uniform spacing";
-    return {};
+    return check_winding(out);
   });
+}
+
+/// In the plane whole turns between two held tangents live in the positions alone, and so in the start.
+Status Nodes::check_winding(const KinematicsDeclaration& declared) const {
+  if (manifold_ != Manifold::circle || mesh_.held_tangents != 2) return {};
+  std::vector<double> q;
+  for (const FieldDeclaration& field : declared.fields) q.insert(q.end(), field.start.begin(), field.start.end());
+  const int each = 1 + (mesh_.sliding() ? 2 : 0);
+  std::vector<double> strain(mesh_.stations.size() * at(each));
+  SiteEvaluation evaluation;
+  evaluation.site = Site::station;
+  evaluation.q = q;
+  evaluation.values = strain;
+  if (Status status = evaluate(evaluation); !status.ok()) return status;
+  const double* held = q.data() + held_tangent_.coordinate;
+  double missing = held[1] - held[0];
+  for (std::size_t i = 0; i < strain.size(); i += at(each)) missing -= strain[i];
+  if (std::fabs(missing) < 1.0) return {};
+  return Status::failure(Code::unsupported, std::string("the start of '") + mesh_.curve.name +
+                                                "' does not wind as often as its held ends are turned, and node "
+                                                "positions alone could not make up for it: use kinematics = "
+                                                "\"edge-frames\"");
 }
 
 /// A row between two nodes that are wholly held would only freeze L, unless L has nothing else to follow.

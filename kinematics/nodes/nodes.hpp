@@ -18,6 +18,7 @@ class Nodes final : public Kinematics {
  public:
   explicit Nodes(const ParameterSet&) {}
 
+  /// `unsupported` in the plane where the start does not wind as often as two held ends are turned.
   Status declare(const CurveView& curve, const Needs& needs, KinematicsDeclaration& out) noexcept override;
   /// `failed` naming the edge where one has length zero, and so no direction, or has turned by half a turn against
   /// State 1, so that its frame cannot follow.
@@ -29,6 +30,7 @@ class Nodes final : public Kinematics {
 
  private:
   void declare_fields(const Needs& needs, KinematicsDeclaration& out);
+  Status check_winding(const KinematicsDeclaration& declared) const;
   FieldDeclaration angle_field(const Needs& needs) const;
   void declare_sites(KinematicsDeclaration& out) const;
   SiteDeclaration stations() const;

@@ -372,7 +372,10 @@ Verdict verdict(Ipopt::ApplicationReturnStatus status) {
     case Ipopt::Error_In_Step_Computation:
       return {Claim::stalled, "Ipopt could not compute a step"};
     case Ipopt::Invalid_Number_Detected:
-      return {Claim::failed, "an evaluation gave no finite number"};
+      return {
+          Claim::failed,
+          "an evaluation gave no finite number, or at the start a row found no point of the wall within its window: "
+          "give the constraint a larger 'window', or look at the start"};
     default:
       return {Claim::failed, "Ipopt ended with return code " + std::to_string(static_cast<int>(status))};
   }

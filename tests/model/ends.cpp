@@ -64,6 +64,55 @@ TEST_CASE("a turned end rolls a rod up into whole circles, from either end, to r
   }
 }
 
+TEST_CASE("whole turns between two held ends survive in both kinematics") {
+  for (const char* turn : {"180 deg", "270 deg", "540 deg", "-270 deg"}) {
+    CAPTURE(turn);
+    double energy[2] = {};
+    for (const bool nodes : {false, true}) {
+      std::string text =
+          rod(nodes ? "nodes" : "edge-frames",
+              std::string(R"(["clamped", { type = "clamped", move = [-60, 10], turn = ")") + turn + "\" }]");
+      energy[nodes ? 1 : 0] = solved(edited(text, "nodes = 41", "nodes = 81")).readings.term_energy[0];
+    }
+    REQUIRE(energy[0] > 100.0);
+    CHECK(energy[1] == doctest::Approx(energy[0]).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("turns that node positions have no room for are refused in words") {
+  // The ends stay a whole rod's length apart, so that no start of its length winds once.
+  const std::string ends = R"(["clamped", { type = "clamped", turn = "360 deg" }])";
+  CHECK(refusal_of(rod("nodes", ends)).find("use kinematics = \"edge-frames\"") != std::string::npos);
+  CHECK(session_of_text(rod("edge-frames", ends)) != nullptr);
+}
+
+TEST_CASE("a held edge stays where it is, whatever the other end does") {
+  for (const char* kinematics : {"nodes", "edge-frames"}) {
+    for (const char* other :
+         {R"({ rotation = "held", turn = "60 deg" })", R"({ position = ["free", "held"], move = [0, 20] })",
+          R"({ type = "clamped", turn = "60 deg", move = [-5, 0] })"}) {
+      CAPTURE(kinematics);
+      CAPTURE(other);
+      const Solved held = solved(rod(kinematics, std::string(R"(["held-edge", )") + other + "]"));
+      const std::vector<double>& p = held.curve("rod").points;
+      CHECK(std::vector<double>(p.begin(), p.begin() + 4) == std::vector<double>{0.0, 0.0, 2.5, 0.0});
+    }
+  }
+}
+
+TEST_CASE("a rigid vessel ignores its ends, and hands State 1's tangents to its wire") {
+  SmallScene scene;
+  scene.wire_ends = R"(["clamped", "free"])";
+  const auto plain = session_of_text(edited(scene.text(), "ends = ", "rigid = true\nends = "));
+  scene.vessel_ends =
+      R"([{ type = "clamped", tangent = [1, 5], move = [0, 3] }, { type = "clamped", turn = "60 deg" }])";
+  const auto ignored = session_of_text(edited(scene.text(), "ends = ", "rigid = true\nends = "));
+  CHECK(plain->scene->start_coordinates() == ignored->scene->start_coordinates());
+  for (int k = 0; k < 2; ++k) {
+    CHECK(plain->scene->find("wire")->view.end[0].tangent[k] == ignored->scene->find("wire")->view.end[0].tangent[k]);
+  }
+}
+
 TEST_CASE("a solver comes back to the circle from a perturbed start") {
   for (const char* kinematics : {"nodes", "edge-frames"}) {
     CAPTURE(kinematics);
