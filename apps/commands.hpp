@@ -25,8 +25,15 @@ struct SolveOptions {
   bool json = false;
 };
 
+struct CheckCommandOptions {
+  std::string file;
+  std::vector<std::string> set;  ///< "path=value"
+  bool json = false;
+};
+
 int solve(const CommonOptions& common, const SolveOptions& options);
 int explain(const CommonOptions& common, const std::string& file, const std::vector<std::string>& set);
+int check(const CommonOptions& common, const CheckCommandOptions& options);
 /// `kind` "" for all.
 int list_plugins(const CommonOptions& common, const std::string& kind, bool json);
 /// `what`: "kind/name".

@@ -40,6 +40,14 @@ int main(int argc, char** argv) {
   overrides(explain_command, explain_set);
   plugin_path(explain_command);
 
+  CheckCommandOptions check_options;
+  CLI::App* check_command = app.add_subcommand(
+      "check", "judge derivatives, invariances, scaling and rigid modes of a composition, term by term");
+  check_command->add_option("FILE", check_options.file, "composition (TOML)")->required();
+  overrides(check_command, check_options.set);
+  check_command->add_flag("--json", check_options.json, "print the report as JSON, and nothing else, on stdout");
+  plugin_path(check_command);
+
   std::string kind;
   bool plugins_json = false;
   CLI::App* plugins_command = app.add_subcommand("plugins", "list what is installed");
@@ -61,6 +69,7 @@ int main(int argc, char** argv) {
   }
   if (solve_command->parsed()) return solve(common, solve_options);
   if (explain_command->parsed()) return explain(common, explain_file, explain_set);
+  if (check_command->parsed()) return check(common, check_options);
   if (plugins_command->parsed()) return list_plugins(common, kind, plugins_json);
   return describe(common, what, describe_json);
 }

@@ -77,6 +77,13 @@ class Assembly final : public Problem, public PlaceTables {
   Status site_stress(Span<const double> q, int curve, Site site, std::vector<double>& out);
   Status report(Span<const double> q, int constraint, std::vector<RowReport>& out);
 
+  // One of the scene's energies by itself, without rows.
+
+  /// Over all tangent numbers, the fixed ones included.
+  Status term_gradient(Span<const double> q, int term, std::vector<double>& out);
+  /// In the order of `hessian_pattern`.
+  Status term_hessian(Span<const double> q, int term, Span<double> values);
+
   const Scene& scene() const noexcept { return scene_; }
   const std::vector<RowOrigin>& row_origins() const noexcept { return origins_; }
   const std::vector<FieldEntry>& entries() const noexcept { return entries_; }
@@ -110,6 +117,8 @@ class Assembly final : public Problem, public PlaceTables {
   Status update_rows(bool jacobian);
   Status update_constraint(std::size_t index, bool jacobian);
   Status update_row_hessians(Span<const double> multipliers);
+  /// Brings every place's stress, and with `modulus` its modulus, to those of one energy alone.
+  Status sum_term(Span<const double> q, int term, bool modulus);
   /// Of the Lagrangian: energies, closure and constraints, at every place.
   void set_total_stress(double energy_factor, Span<const double> multipliers) noexcept;
   const double* curve_q(int curve) const noexcept;
