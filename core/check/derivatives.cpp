@@ -11,7 +11,8 @@ namespace bowstring::checking {
 namespace {
 
 constexpr double unjudged = std::numeric_limits<double>::quiet_NaN();
-constexpr double beside = 0.02;  // of the natural sizes: how far a wrong derivative is looked at once more
+constexpr double clearly = 0.01;  // of the error at the state itself: how small it has to be beside it
+constexpr double beside = 0.02;   // of the natural sizes: how far a wrong derivative is looked at once more
 
 class DerivativeCheck {
  public:
@@ -57,7 +58,8 @@ class DerivativeCheck {
     if (!settle(assembly_, q).ok()) return;
     const std::vector<Finding> again = compare(assembly_, q, state, sweep_, wanted);
     for (std::size_t k = 0; k < found.size(); ++k) {
-      if (wanted[k] == 0 || again[k].wrong > 0 || again[k].compared == 0) continue;
+      const bool holds = again[k].wrong == 0 && again[k].compared > 0 && again[k].error <= clearly * found[k].error;
+      if (wanted[k] == 0 || !holds) continue;
       if (found[k].kinks == 0) found[k].kink = found[k].place;
       found[k].kinks += found[k].wrong;
       found[k].wrong = 0;

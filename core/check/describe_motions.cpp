@@ -25,22 +25,18 @@ std::string numbers(const Vector3& v, int dimension, double scale) {
 
 /// "x", or "(0.6, 0.8, 0)".
 std::string axis_name(const Vector3& v, int dimension) {
-  const Vector3 unit = normalized(v);
+  Vector3 unit = normalized(v);
+  int longest = 0;
+  for (int k = 1; k < dimension; ++k) longest = std::fabs(unit[k]) > std::fabs(unit[longest]) ? k : longest;
+  if (unit[longest] < 0.0) unit = -unit;
   for (int k = 0; k < dimension; ++k) {
-    if (std::fabs(std::fabs(unit[k]) - 1.0) <= same) return std::string(1, "xyz"[k]);
+    if (std::fabs(unit[k] - 1.0) <= same) return std::string(1, "xyz"[k]);
   }
   return numbers(unit, dimension, 1.0);
 }
 
 Eigen::Vector3d eigen(const Vector3& v) { return {v[0], v[1], v[2]}; }
 Vector3 vector(const Eigen::Vector3d& v) { return {{v[0], v[1], v[2]}}; }
-
-/// Rows: ω of each column.
-Eigen::MatrixXd turns(const Body& body, const Eigen::MatrixXd& modes) {
-  Eigen::MatrixXd out(3, modes.cols());
-  for (Eigen::Index k = 0; k < modes.cols(); ++k) out.col(k) = body.radius() * eigen(body.turn(modes.col(k)));
-  return out;
-}
 
 std::string translations(const Body& body, const Eigen::MatrixXd& modes, int dimension) {
   if (modes.cols() == 0) return "";
@@ -86,8 +82,14 @@ std::string rotations(const Body& body, const Eigen::MatrixXd& modes, int dimens
 
 }  // namespace
 
+Eigen::MatrixXd translations_among(const Body& body, const Eigen::MatrixXd& motions) {
+  Eigen::MatrixXd turns(3, motions.cols());
+  for (Eigen::Index k = 0; k < motions.cols(); ++k) turns.col(k) = body.radius() * eigen(body.turn(motions.col(k)));
+  return null_space(turns, same);
+}
+
 std::string describe_motions(const Body& body, const Eigen::MatrixXd& modes, int dimension) {
-  const Eigen::MatrixXd shifting = null_space(turns(body, modes), same);
+  const Eigen::MatrixXd shifting = translations_among(body, modes);
   const Eigen::MatrixXd turning = null_space(shifting.transpose(), 0.5);
   const std::string first = translations(body, modes * shifting, dimension);
   const std::string second = rotations(body, modes * turning, dimension, shifting.cols() > 0);

@@ -53,6 +53,9 @@ class Body {
 /// value, or times 1 where that is less.
 Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, double tolerance);
 
+/// Combinations of columns of `motions` (of the body's candidates) that turn nothing. Columns.
+Eigen::MatrixXd translations_among(const Body& body, const Eigen::MatrixXd& motions);
+
 /// "translations along every axis and rotations about every axis", "a rotation about z through (0, 0, 0) mm". Columns
 /// of `modes` are combinations of the body's candidates that move nodes.
 std::string describe_motions(const Body& body, const Eigen::MatrixXd& modes, int dimension);

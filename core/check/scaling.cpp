@@ -125,27 +125,36 @@ class ScalingCheck {
     report_.scaling.push_back({verdict, subject, what, unjudged, "", text});
   }
 
-  /// The stiffest entry of each field, per mm: angles divided by the edge length twice.
+  /// The stiffest entry of a field in N/mm: angles divided by the edge length twice, a whole length taken as the same
+  /// change of each of its edges.
+  double stiffest_entry(const FieldGroup& group) const {
+    const int edges = assembly_.scene().curves[at(group.curve)]->view.nodes - 1;
+    const bool whole = group.field->manifold == Manifold::real && group.field->count == 1;
+    double out = 0.0;
+    for (int u = group.begin; u < group.end && !diagonal_.empty(); ++u) {
+      const double mm = whole ? 1.0 / edges : assembly_.stationarity_scale()[at(u)];
+      out = std::max(out, diagonal_[at(u)] / (mm * mm));
+    }
+    return out;
+  }
+
   void compare_fields() {
     double softest = infinity, stiffest = 0.0;
     std::string soft_name, stiff_name;
     for (const FieldGroup& group : groups_) {
-      double own = 0.0;
-      for (int u = group.begin; u < group.end && !diagonal_.empty(); ++u) {
-        const double scale = assembly_.stationarity_scale()[at(u)];
-        own = std::max(own, diagonal_[at(u)] / (scale * scale));
-      }
+      const double own = stiffest_entry(group);
       if (own == 0.0) continue;  // rows or other fields hold it
       if (own < softest) softest = own, soft_name = group_name(assembly_, group);
       if (own > stiffest) stiffest = own, stiff_name = group_name(assembly_, group);
     }
-    if (stiffest == 0.0)
+    if (stiffest == 0.0) {
       return line(CheckVerdict::note, "unknowns", "stiffness", "no energy has a second derivative at the start");
-    const std::string text = "largest entries from " + number(softest) + " N/mm (" + soft_name + ") to " +
-                             number(stiffest) + " N/mm (" + stiff_name + ")";
+    }
+    std::string text = "largest entries from " + number(softest) + " N/mm (" + soft_name + ") to " + number(stiffest) +
+                       " N/mm (" + stiff_name + ")";
     const bool apart = stiffest > far_apart * softest;
-    line(apart ? CheckVerdict::note : CheckVerdict::ok, "unknowns", "stiffness",
-         apart ? text + ": further apart than 1e6, so that rounding of the stiff ones hides the soft ones" : text);
+    if (apart) text += ": further apart than 1e6, so that rounding of the stiff ones hides the soft ones";
+    line(apart ? CheckVerdict::note : CheckVerdict::ok, "unknowns", "stiffness", text);
   }
 
   void judge_rows(const RowScale& scale) {

@@ -170,6 +170,7 @@ class SoftSearch {
   /// Removes from the span of `modes` those of a family, and says how many they were. The family: the unknowns marked
   /// in `inside`, and the orthonormal `columns`.
   int take(const std::vector<Numbers>& columns, const std::vector<char>& inside, Dense& modes) const {
+    if (modes.cols() == 0) return 0;
     Dense outside = modes;
     for (int u = 0; u < n_; ++u) {
       if (inside[at(u)] != 0) outside.row(u).setZero();

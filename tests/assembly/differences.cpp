@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/check/differences.hpp"
 #include "tests/assembly/small_scene.hpp"
 
 namespace bowstring::testing {
@@ -36,14 +37,14 @@ void claim(Problem& problem, const std::vector<double>& point, const Evaluate& e
   out.hessian = dense_symmetric(triangle, values, n);
 }
 
-/// f(t) for the step t along a direction, as the five values of a fourth-order difference.
+/// Of f(t), t the step along a direction.
 template <class Function>
-double first_difference(const Function& f, double h) {
-  return (f(-2.0 * h) - f(2.0 * h) + 8.0 * (f(h) - f(-h))) / (12.0 * h);
+double slope(const Function& f, double h) {
+  return first_difference(f(-2.0 * h), f(-h), f(h), f(2.0 * h), h);
 }
 template <class Function>
-double second_difference(const Function& f, double at_zero, double h) {
-  return (16.0 * (f(h) + f(-h)) - f(2.0 * h) - f(-2.0 * h) - 30.0 * at_zero) / (12.0 * h * h);
+double bend(const Function& f, double at_zero, double h) {
+  return second_difference(f(-2.0 * h), f(-h), at_zero, f(h), f(2.0 * h), h);
 }
 
 double lagrangian(const LocalProblem& local, const std::vector<double>& delta) {
@@ -127,14 +128,13 @@ void check_derivatives(const LocalProblem& local, DifferenceSteps steps, Differe
   for (int u = 0; u < n; ++u) {
     direction.assign(at(n), 0.0);
     direction[at(u)] = 1.0;
-    gradient[at(u)] = first_difference([&](double t) { return local.energy(along(t)); }, steps.first);
+    gradient[at(u)] = slope([&](double t) { return local.energy(along(t)); }, steps.first);
     std::vector<double> values[4];
     const double node[4] = {-2.0, -1.0, 1.0, 2.0};
     for (int k = 0; k < 4; ++k) values[k] = local.row_values(along(node[k] * steps.first));
     for (int r = 0; r < m; ++r) {
       const auto i = at(r);
-      jacobian[at(r * n + u)] =
-          (values[0][i] - values[3][i] + 8.0 * (values[2][i] - values[1][i])) / (12.0 * steps.first);
+      jacobian[at(r * n + u)] = first_difference(values[0][i], values[1][i], values[2][i], values[3][i], steps.first);
     }
   }
   REQUIRE(largest(gradient) > 1e-3);
@@ -146,7 +146,7 @@ void check_derivatives(const LocalProblem& local, DifferenceSteps steps, Differe
 
   const double at_zero = lagrangian(local, std::vector<double>(at(n), 0.0));
   const auto second = [&] {
-    return second_difference([&](double t) { return lagrangian(local, along(t)); }, at_zero, steps.second);
+    return bend([&](double t) { return lagrangian(local, along(t)); }, at_zero, steps.second);
   };
   std::vector<double> hessian(at(n * n));
   for (int i = 0; i < n; ++i) {

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "core/check/differences.hpp"
 #include "tests/kinematics/declared_curve.hpp"
 
 namespace bowstring::testing {
@@ -37,7 +38,7 @@ std::vector<std::vector<double>> differences(const Declared& curve, const std::v
     const std::vector<double> a = f(curve.moved(q, u, -2.0 * step)), b = f(curve.moved(q, u, -step));
     const std::vector<double> c = f(curve.moved(q, u, step)), d = f(curve.moved(q, u, 2.0 * step));
     std::vector<double> row(a.size());
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] = (a[i] - d[i] + 8.0 * (c[i] - b[i])) / (12.0 * step);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] = first_difference(a[i], b[i], c[i], d[i], step);
     rows.push_back(row);
   }
   return rows;
