@@ -70,6 +70,7 @@ void Comparison::add(double step, const Samples& f) {
     const double miss = std::max(0.0, std::fabs(claim_.value[i] - difference) * w - noise);
     track.difference[1] = std::exchange(track.difference[0], difference);
     track.miss[2] = std::exchange(track.miss[1], std::exchange(track.miss[0], miss));
+    track.noise = noise;
     track.jump = std::fabs(fp1 - 2.0 * f0 + fm1) / step * w;
     if (track.steps++ == 0) track.first_jump = track.jump;
     const double error = miss == 0.0 ? 0.0 : miss / relative_to;
@@ -94,7 +95,7 @@ bool Comparison::converges(const Track& track) const noexcept {
 }
 
 bool Comparison::keeps_jumping(const Track& track) const noexcept {
-  return track.steps >= 2 && track.jump > kink * track.first_jump;
+  return track.steps >= 2 && track.jump > kink * track.first_jump + track.noise;
 }
 
 Outcome Comparison::outcome(int component) const noexcept {
@@ -102,7 +103,7 @@ Outcome Comparison::outcome(int component) const noexcept {
   const Track& track = track_[i];
   if (track.error <= tolerance_ || converges(track)) return Outcome::agrees;
   const double moved = std::fabs(track.difference[0] - track.difference[1]) * claim_.weight[i];
-  if (track.steps >= 2 && moved > unsettled * track.miss[0]) return Outcome::not_smooth;
+  if (track.steps >= 2 && moved > unsettled * track.miss[0] + track.noise) return Outcome::not_smooth;
   const bool kinked = std::any_of(track_.begin(), track_.end(), [&](const Track& other) {
     return keeps_jumping(other) && other.jump > kink * track.miss[0];
   });

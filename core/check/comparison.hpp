@@ -45,6 +45,7 @@ class Comparison {
   struct Track {
     double error = std::numeric_limits<double>::infinity();
     int steps = 0;                        // that rounding did not blur
+    double noise = 0.0;                   // that rounding leaves of the newest difference
     double miss[3] = {};                  // of the last steps, the newest first
     double difference[2] = {};            // likewise
     double jump = 0.0, first_jump = 0.0;  // between the one-sided differences

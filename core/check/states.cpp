@@ -35,6 +35,8 @@ double amplitude(const Assembly& assembly, const FieldGroup& group, const FieldE
   }
 }
 
+}  // namespace
+
 /// Sines along the curve with random coefficients, one set per tangent component of a field.
 std::vector<double> smooth_displacement(const Assembly& assembly, const std::vector<double>& q, unsigned seed) {
   std::mt19937 random(seed);
@@ -59,8 +61,6 @@ std::vector<double> smooth_displacement(const Assembly& assembly, const std::vec
   }
   return delta;
 }
-
-}  // namespace
 
 std::vector<double> random_numbers(int count, unsigned seed) {
   std::mt19937 random(seed);

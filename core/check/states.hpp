@@ -26,6 +26,9 @@ Status settle(Assembly& assembly, const std::vector<double>& q);
 /// evaluated the displacement is halved, six times at most.
 States make_states(Assembly& assembly, int perturbed, unsigned seed);
 
+/// What such a state is away from `q` by: n numbers.
+std::vector<double> smooth_displacement(const Assembly& assembly, const std::vector<double>& q, unsigned seed);
+
 /// n numbers whose size is between 0.3 and 1.
 std::vector<double> random_numbers(int count, unsigned seed);
 
