@@ -7,10 +7,9 @@
 #include <Eigen/SparseLU>
 
 #include "core/certificate/multipliers.hpp"
+#include "core/check/mode_names.hpp"
 #include "core/check/states.hpp"
 #include "core/check/unknowns.hpp"
-#include "core/lie/small_matrix.hpp"
-#include "core/model/manifold.hpp"
 
 namespace bowstring::checking {
 
@@ -26,7 +25,6 @@ constexpr int block = 12;        // modes that are looked for
 constexpr int sweeps = 8;        // of inverse iteration
 constexpr double shift = 1e-11;  // of the largest stiffness, so that the matrix has an inverse
 constexpr double slack = 1e-10;  // of 1/stiffness, by which equality rows give way, so that they may be redundant
-constexpr double within = 1e-3;  // of a mode's square outside a family of motions that it still belongs to
 
 /// Unknowns in mm: x = scale · δ.
 class SoftSearch {
@@ -47,7 +45,7 @@ class SoftSearch {
     Dense modes = near_null_space();
     if (!factorised_) return {line(CheckVerdict::note, "not judged: the matrix could not be factorised")};
     if (modes.cols() == 0) return {line(CheckVerdict::ok, "no other mode is near zero")};
-    return name(q, std::move(modes));
+    return name_modes(assembly_, q, scale_, std::move(modes), full_);
   }
 
  private:
@@ -165,92 +163,6 @@ class SoftSearch {
     }
     full_ = kept == block && kept < n_;
     return out.leftCols(kept);
-  }
-
-  /// Removes from the span of `modes` those of a family, and says how many they were. The family: the unknowns marked
-  /// in `inside`, and the orthonormal `columns`.
-  int take(const std::vector<Numbers>& columns, const std::vector<char>& inside, Dense& modes) const {
-    if (modes.cols() == 0) return 0;
-    Dense outside = modes;
-    for (int u = 0; u < n_; ++u) {
-      if (inside[at(u)] != 0) outside.row(u).setZero();
-    }
-    for (const Numbers& column : columns) outside -= column * (column.transpose() * modes);
-    const Eigen::SelfAdjointEigenSolver<Dense> eigen(outside.transpose() * outside);
-    Eigen::Index count = 0;
-    while (count < modes.cols() && eigen.eigenvalues()[count] <= within) ++count;
-    modes = (modes * eigen.eigenvectors().rightCols(modes.cols() - count)).eval();
-    return static_cast<int>(count);
-  }
-
-  /// Each node's unit tangent as a direction of the unknowns, where its position is free.
-  std::vector<Numbers> tangents(const std::vector<double>& q, const FieldGroup& group) const {
-    std::vector<Numbers> out;
-    const int d = assembly_.scene().dimension;
-    const double* p = q.data() + assembly_.entries()[at(group.entry_begin)].coordinate;
-    const int nodes = group.field->count;
-    for (int i = 0; i < nodes; ++i) {
-      const FieldEntry& entry = assembly_.entries()[at(group.entry_begin + i)];
-      const double* before = p + std::max(i - 1, 0) * d;
-      const double* after = p + std::min(i + 1, nodes - 1) * d;
-      Numbers column = Numbers::Zero(n_);
-      for (int k = 0; k < d; ++k) {
-        const int u = assembly_.free_of_unknown()[at(entry.unknown + k)];
-        if (u >= 0) column[u] = after[k] - before[k];
-      }
-      if (column.norm() > 0.0) out.push_back(column.normalized());
-    }
-    return out;
-  }
-
-  int take_sliding(const std::vector<double>& q, int curve, Dense& modes) const {
-    std::vector<char> inside(at(n_), 0);
-    std::vector<Numbers> columns;
-    for (const FieldGroup& group : field_groups(assembly_)) {
-      if (group.curve != curve) continue;
-      if (group.field->manifold == Manifold::real)
-        std::fill(inside.begin() + group.begin, inside.begin() + group.end, 1);
-      if (group.field->manifold == Manifold::vector) columns = tangents(q, group);
-    }
-    return take(columns, inside, modes);
-  }
-
-  int take_twist(int curve, Dense& modes) const {
-    std::vector<char> inside(at(n_), 0);
-    for (const FieldGroup& group : field_groups(assembly_)) {
-      if (group.curve != curve || assembly_.scene().dimension == 2) continue;
-      for (int i = group.entry_begin; i < group.entry_end; ++i) {
-        const FieldEntry& entry = assembly_.entries()[at(i)];
-        const bool turns = entry.manifold == Manifold::rotation || entry.manifold == Manifold::circle;
-        const int u = assembly_.free_of_unknown()[at(entry.unknown)];
-        if (turns && u >= 0) inside[at(u)] = 1;
-      }
-    }
-    return take({}, inside, modes);
-  }
-
-  std::vector<CheckLine> name(const std::vector<double>& q, Dense modes) const {
-    std::vector<CheckLine> out;
-    const std::string least = full_ ? "at least " : "";
-    const auto add = [&](const std::string& subject, int count, const std::string& text) {
-      out.push_back({CheckVerdict::note, subject, "soft modes", unjudged, "", least + std::to_string(count) + text});
-    };
-    for (const auto& curve : assembly_.scene().curves) {
-      const std::string subject = "'" + curve->name + "'";
-      if (const int count = take_sliding(q, curve->view.index, modes); count > 0) {
-        add(subject, count, " near zero: its nodes may slide along it");
-      }
-      if (const int count = take_twist(curve->view.index, modes); count > 0) {
-        add(subject, count, " near zero: single frames may turn about their tangents");
-      }
-      if (modes.cols() == 0) return out;
-    }
-    Eigen::Index most = 0;
-    modes.rowwise().norm().maxCoeff(&most);
-    add("the scene", static_cast<int>(modes.cols()),
-        " near zero that no rigid motion explains; what moves most is " +
-            unknown_name(assembly_, static_cast<int>(most)));
-    return out;
   }
 
   Assembly& assembly_;

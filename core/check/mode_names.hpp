@@ -1,0 +1,17 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Dense>
+
+#include "core/check/check.hpp"
+
+namespace bowstring::checking {
+
+/// Words for near-zero modes: columns over the free unknowns in mm, x = scale · δ. Counts those of each curve that lie
+/// in a family (rigid motions, sliding of its nodes along it, turns of single frames); of the rest it names the unknown
+/// that moves most. `at_least`: there may be more modes than were looked for.
+std::vector<CheckLine> name_modes(const Assembly& assembly, const std::vector<double>& q, const Eigen::VectorXd& scale,
+                                  Eigen::MatrixXd modes, bool at_least);
+
+}  // namespace bowstring::checking
