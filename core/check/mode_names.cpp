@@ -83,13 +83,20 @@ class ModeNames {
     return take({}, inside, modes);
   }
 
+  bool moves_held(const std::vector<double>& rate) const {
+    for (std::size_t u = 0; u < rate.size(); ++u) {
+      if (assembly_.free_of_unknown()[u] < 0 && rate[u] != 0.0) return true;
+    }
+    return false;
+  }
+
   /// Where the energies' second derivatives vanish, rigid motions may be among the modes though energies resist them
   /// farther away.
   int take_rigid(const std::vector<double>& q, int curve, Dense& modes) const {
     const Mover mover(assembly_);
     const int d = assembly_.scene().dimension;
     const int count = d * (d + 1) / 2;
-    Dense motions(n_, count);
+    Dense motions = Dense::Zero(n_, count);
     std::vector<double> rate;
     for (int k = 0; k < count; ++k) {
       RigidMotion motion;
@@ -97,6 +104,7 @@ class ModeNames {
       if (k >= d) motion.turn = Vector3::unit(d == 2 ? 2 : k - d);
       motion.centre = mover.centre(q, curve);
       if (!mover.rate(q, curve, motion, rate).ok()) return 0;
+      if (moves_held(rate)) continue;
       const std::vector<double> own = free_part(assembly_, rate);
       for (int u = 0; u < n_; ++u) motions(u, k) = scale_[u] * own[at(u)];
     }

@@ -146,7 +146,7 @@ TEST_CASE("every installed plugin can be described") {
 
 TEST_CASE("--version and --help") {
   CHECK(successful({"--version"}).rfind("bowstring ", 0) == 0);
-  check_parts(successful({"--help"}), {"solve", "explain", "plugins", "describe"});
+  check_parts(successful({"--help"}), {"solve", "explain", "check", "plugins", "describe"});
 }
 
 }  // namespace bowstring

@@ -86,6 +86,15 @@ TEST_CASE("springs and ends that hold a curve are believed") {
   check_no_soft_modes(report);
 }
 
+TEST_CASE("rigid motions that energies resist only farther away are near zero at the start") {
+  Rod rod;
+  rod.more = "\n[[energy]]\ntype = \"test-slack\"\non = \"rod\"\n";
+  const CheckReport report = check(*dishonest_session(rod.text())->assembly);
+  CHECK(rigid(report) == "ends and energies hold them all");
+  CHECK(line_of(report.modes, "'rod'", "soft modes").text ==
+        "3 near zero: at the start it is free to move as a rigid body");
+}
+
 TEST_CASE("a load along a free translation has no equilibrium; one that a pinned rod hangs from has") {
   Rod rod;
   rod.more = "\n[[energy]]\ntype = \"point-load\"\non = \"rod\"\nforce = [\"0 N\", \"0.5 N\"]\nat = \"last\"\n";
