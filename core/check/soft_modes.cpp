@@ -136,6 +136,8 @@ class SoftSearch {
       factorised_ = false;
       return Dense(n_, 0);
     }
+    Sparse rows(row_count_, n_);
+    rows.setFromTriplets(rows_.begin(), rows_.end());
     const int count = std::min(block, n_);
     const std::vector<double> seed = random_numbers(n_ * count, 5);
     Dense x = Eigen::Map<const Dense>(seed.data(), n_, count);
@@ -145,7 +147,10 @@ class SoftSearch {
       right.topRows(n_) = x;
       const Dense solved = lu.solve(right);
       x = Eigen::HouseholderQR<Dense>(solved.topRows(n_)).householderQ() * Dense::Identity(n_, count);
-      const Eigen::SelfAdjointEigenSolver<Dense> ritz(x.transpose() * (hessian_ * x));
+      // What leaves the rows' null space counts as stiff, or it would mix with the modes where they are few.
+      const Dense off = rows * x;
+      const Eigen::SelfAdjointEigenSolver<Dense> ritz(x.transpose() * (hessian_ * x) +
+                                                      stiffness_ * off.transpose() * off);
       x = (x * ritz.eigenvectors()).eval();
       value = ritz.eigenvalues();
     }
@@ -153,13 +158,10 @@ class SoftSearch {
   }
 
   Dense select(const Dense& x, const Numbers& value) {
-    Sparse rows(row_count_, n_);
-    rows.setFromTriplets(rows_.begin(), rows_.end());
     Dense out(n_, x.cols());
     int kept = 0;
     for (Eigen::Index k = 0; k < x.cols(); ++k) {
-      const bool admissible = row_count_ == 0 || (rows * x.col(k)).norm() <= 1e-6;
-      if (admissible && std::fabs(value[k]) <= near_zero()) out.col(kept++) = x.col(k);
+      if (std::fabs(value[k]) <= near_zero()) out.col(kept++) = x.col(k);
     }
     full_ = kept == block && kept < n_;
     return out.leftCols(kept);
