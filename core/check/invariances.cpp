@@ -223,8 +223,7 @@ class InvarianceCheck {
         const EndCondition& held = curve->view.end[end];
         const bool position = held.position_held[0] || held.position_held[1] || held.position_held[2];
         if (!position && !held.rotation_held && !held.edge_held) continue;
-        text += (text.empty() ? "" : ", ") + std::string(end == 0 ? "first end " : "last end ") +
-                end_type_name(curve->end_type[end]);
+        text += (text.empty() ? "" : ", ") + std::string(end == 0 ? "first end " : "last end ") + curve->end_text[end];
       }
       const std::string name =
           std::string(curve->view.kind == CurveKind::wire ? "wire '" : "vessel '") + curve->name + "'";

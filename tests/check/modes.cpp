@@ -98,12 +98,10 @@ TEST_CASE("rigid motions that energies resist only farther away are near zero at
 TEST_CASE("a load along a free translation has no equilibrium; one that a pinned rod hangs from has") {
   Rod rod;
   rod.more = "\n[[energy]]\ntype = \"point-load\"\non = \"rod\"\nforce = [\"0 N\", \"0.5 N\"]\nat = \"last\"\n";
+  rod.ends = R"([{ position = ["free", "held"], axes = "end", tangent = [1, 1] }, "free"])";  // rails at 45 degrees
   const CheckReport driven = report_of(rod);
   CHECK(line_of(driven.modes, "'rod'", "rigid motions").verdict == CheckVerdict::failed);
-  CHECK(rigid(driven) ==
-        "3 free: translations along every axis and a rotation; a load drives that and nothing resists: there is no "
-        "equilibrium");
-  check_no_soft_modes(driven);
+  CHECK(rigid(driven).find("a load drives that and nothing resists: there is no equilibrium") != std::string::npos);
   rod.ends = R"(["pinned", "free"])";
   const CheckReport hanging = report_of(rod);
   CHECK(rigid(hanging) == "ends and energies hold them all");
