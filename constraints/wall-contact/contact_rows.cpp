@@ -12,16 +12,6 @@ constexpr int most_places = 2 + contact::max_stencil;
 /// Inside h is the gap itself, outside its opposite with the wire's radius added to the tube's.
 double sign(const Wall& wall) noexcept { return wall.outside ? -1.0 : 1.0; }
 
-/// Where a derivative over (wire nodes, stencil) stands among those over the row's places.
-struct Placement {
-  int wire, shift;
-  int operator()(int k) const noexcept { return k < wire ? k : k + shift; }
-};
-
-Placement placement(const Row& row, contact::NodeRange nodes, int dimension) noexcept {
-  return {row.nodes * dimension, (nodes.first - row.covers.first) * dimension};
-}
-
 }  // namespace
 
 RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept {
@@ -50,27 +40,38 @@ RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept {
   return point;
 }
 
-void write_gradient(const Row& row, const Wall& wall, const RowPoint& point, double* out) noexcept {
-  const int dimension = wall.centerline.dimension;
-  double local[most_places * 3];
-  const contact::NodeRange nodes =
-      contact::gap_derivatives(wall.centerline, point.wire, wall.form, point.closest, local, 0.0, nullptr);
-  const Placement place = placement(row, nodes, dimension);
-  std::fill(out, out + row.places() * dimension, 0.0);
-  for (int k = 0; k < (row.nodes + nodes.count) * dimension; ++k) out[place(k)] = sign(wall) * local[k];
+contact::GapExpansion expand(const Wall& wall, const RowPoint& point) noexcept {
+  return contact::expand_gap(wall.centerline, point.wire, wall.form, point.closest);
 }
 
-void write_hessian(const Row& row, const Wall& wall, const RowPoint& point, double weight, double* out) noexcept {
+RowSupport support(const Row& row, const contact::GapExpansion& expansion) noexcept {
+  return {row.nodes, row.nodes + expansion.nodes.first - row.covers.first, expansion.nodes.count};
+}
+
+void write_gradient(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, bool all_places,
+                    double* out) noexcept {
+  if (!all_places) return contact::gap_gradient(expansion, sign(wall), out);
   const int dimension = wall.centerline.dimension;
-  std::fill(out, out + packed_size(row.places() * dimension), 0.0);
-  if (weight == 0.0) return;
+  double local[most_places * 3];
+  contact::gap_gradient(expansion, sign(wall), local);
+  std::fill(out, out + row.places() * dimension, 0.0);
+  const RowSupport places = support(row, expansion);
+  for (int k = 0; k < places.places() * dimension; ++k) {
+    out[places.place(k / dimension) * dimension + k % dimension] = local[k];
+  }
+}
+
+void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, double weight,
+                   bool all_places, double* out) noexcept {
+  if (!all_places) return contact::gap_hessian(expansion, sign(wall) * weight, out);
+  const int dimension = wall.centerline.dimension;
   double local[packed_size(most_places * 3)];
-  const contact::NodeRange nodes = contact::gap_derivatives(wall.centerline, point.wire, wall.form, point.closest,
-                                                            nullptr, sign(wall) * weight, local);
-  const Placement place = placement(row, nodes, dimension);
-  const int order = (row.nodes + nodes.count) * dimension;
-  for (int a = 0, k = 0; a < order; ++a) {
-    for (int b = 0; b <= a; ++b, ++k) out[packed_index(place(a), place(b))] = local[k];
+  contact::gap_hessian(expansion, sign(wall) * weight, local);
+  std::fill(out, out + packed_size(row.places() * dimension), 0.0);
+  const RowSupport places = support(row, expansion);
+  const auto index = [&](int k) { return places.place(k / dimension) * dimension + k % dimension; };
+  for (int a = 0, k = 0; a < places.places() * dimension; ++a) {
+    for (int b = 0; b <= a; ++b, ++k) out[packed_index(index(a), index(b))] = local[k];
   }
 }
 

@@ -52,10 +52,18 @@ struct RowPoint {
 /// `wire`: all its node positions. `window_edge` in the closest point where the row needs other vessel nodes.
 RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept;
 
-/// ∂(gap) over the row's places, wire nodes first.
-void write_gradient(const Row& row, const Wall& wall, const RowPoint& point, double* out) noexcept;
-/// weight·∂²(gap), packed.
-void write_hessian(const Row& row, const Wall& wall, const RowPoint& point, double weight, double* out) noexcept;
+/// h to second order at that point; its wire points into `wire` of `locate`.
+contact::GapExpansion expand(const Wall& wall, const RowPoint& point) noexcept;
+
+/// The places that the row depends on at that point: its wire nodes, and the vessel nodes of the segment.
+RowSupport support(const Row& row, const contact::GapExpansion& expansion) noexcept;
+
+/// ∂(gap) over the places of its support, or over all its places with zeros elsewhere; wire nodes first.
+void write_gradient(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, bool all_places,
+                    double* out) noexcept;
+/// weight·∂²(gap), packed, over the same.
+void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, double weight,
+                   bool all_places, double* out) noexcept;
 
 /// Makes the state the row's accepted one.
 void refer_to(Row& row, const Wall& wall, const double* wire) noexcept;

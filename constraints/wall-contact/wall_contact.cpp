@@ -127,20 +127,23 @@ class WallContact final : public Constraint {
   Status evaluate(const RowEvaluation& evaluation) const noexcept override {
     const Wall wall = wall_at(*evaluation.at);
     const double* wire = evaluation.at->table(wire_.index, Site::node);
+    const bool derivatives = !evaluation.jacobian.empty() || !evaluation.hessian.empty();
+    if (Status status = find(evaluation, wall, wire, derivatives); !status.ok()) return status;
+    const bool all_places = evaluation.support.empty();
     double* jacobian = evaluation.jacobian.data();
     double* hessian = evaluation.hessian.data();
     for (std::size_t r = 0; r < active_.size(); ++r) {
       const Row& row = rows_[active_[r]];
-      const RowPoint point = locate(row, wall, wire);
-      if (point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
-      if (!evaluation.residual.empty()) evaluation.residual[r] = point.gap;
+      const Found& found = found_.rows[r];
       const int numbers = row.places() * dimension_;
+      if (!evaluation.residual.empty()) evaluation.residual[r] = found.point.gap;
+      if (derivatives && !all_places) evaluation.support[r] = support(row, found.expansion);
       if (jacobian != nullptr) {
-        write_gradient(row, wall, point, jacobian);
+        write_gradient(row, wall, found.expansion, all_places, jacobian);
         jacobian += numbers;
       }
       if (hessian != nullptr) {
-        write_hessian(row, wall, point, evaluation.weight[r], hessian);
+        write_hessian(row, wall, found.expansion, evaluation.weight[r], all_places, hessian);
         hessian += packed_size(numbers);
       }
     }
@@ -151,6 +154,7 @@ class WallContact final : public Constraint {
     const Wall wall = wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
     for (Row& row : rows_) refer_to(row, wall, wire);
+    found_.state = 0;
     return {};
   }
 
@@ -223,6 +227,36 @@ class WallContact final : public Constraint {
   }
 
  private:
+  /// What the last evaluation found at a state: its second derivatives come from the same closest points.
+  struct Found {
+    RowPoint point;
+    contact::GapExpansion expansion;
+  };
+  struct FoundState {
+    const PlaceTables* at = nullptr;
+    std::uint64_t state = 0;  // 0: nothing
+    bool expanded = false;
+    std::vector<Found> rows;  // of active_
+  };
+
+  Status find(const RowEvaluation& evaluation, const Wall& wall, const double* wire, bool derivatives) const noexcept {
+    if (evaluation.state == 0 || evaluation.state != found_.state || evaluation.at != found_.at) {
+      found_.state = 0;
+      found_.expanded = false;
+      for (std::size_t r = 0; r < active_.size(); ++r) {
+        RowPoint& point = found_.rows[r].point;
+        point = locate(rows_[active_[r]], wall, wire);
+        if (point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
+      }
+      found_.at = evaluation.at;
+      found_.state = evaluation.state;
+    }
+    if (!derivatives || found_.expanded) return {};
+    for (Found& found : found_.rows) found.expansion = expand(wall, found.point);
+    found_.expanded = true;
+    return {};
+  }
+
   Wall wall_at(const PlaceTables& at) const noexcept { return wall_of(at.table(vessel_.index, Site::node)); }
   Wall wall_of(const double* points) const noexcept {
     return {{interpolation_, dimension_, vessel_.nodes, points, radius_.data()}, form_, outside_};
@@ -377,8 +411,14 @@ class WallContact final : public Constraint {
     active_.clear();
     if (discretisation != Discretisation::segment_wise) {
       for (std::size_t r = 0; r < rows_.size(); ++r) active_.push_back(r);
-      return;
+    } else {
+      select_segments();
     }
+    found_.state = 0;
+    found_.rows.resize(active_.size());
+  }
+
+  void select_segments() {
     if (node_row_.front() >= 0 && node_row_.back() >= 0) active_.push_back(static_cast<std::size_t>(node_row_.front()));
     for (int i = 0; i < wire_.nodes - 1; ++i) {
       const int chord = chord_row_[static_cast<std::size_t>(i)];
@@ -448,6 +488,7 @@ class WallContact final : public Constraint {
   std::vector<int> node_row_, chord_row_;     // per wire node and segment: its row, −1 where there is none
   std::vector<SegmentState> segments_state_;  // per segment; under segment-wise contact only
   std::vector<std::size_t> active_;           // rows that stand in the problem
+  mutable FoundState found_;
 };
 
 }  // namespace

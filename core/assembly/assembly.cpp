@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/assembly/euclidean.hpp"
+#include "core/assembly/finite.hpp"
 #include "core/model/declarations.hpp"
 #include "core/model/manifold.hpp"
 
@@ -21,17 +22,6 @@ constexpr double largest_turn = 0.78539816339744830962;  // of a station, in one
 Status named(Status status, const std::string& what) {
   if (!status.ok()) status.text = what + ": " + status.text;
   return status;
-}
-
-/// Screens what a constraint wrote, row after row.
-Status check_rows(const std::vector<double>& numbers, const std::vector<int>& begin, const char* what) {
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (std::isfinite(numbers[k])) continue;
-    const auto row = std::upper_bound(begin.begin(), begin.end(), static_cast<int>(k)) - begin.begin() - 1;
-    return Status::failure(Code::failed,
-                           std::string("a ") + what + " of row " + std::to_string(row) + " is not a finite number");
-  }
-  return {};
 }
 
 }  // namespace
@@ -75,23 +65,42 @@ const double* Assembly::curve_q(int curve) const noexcept {
 
 const Curve& Assembly::curve_of(const SiteTable& table) const noexcept { return *scene_.curves[at(table.curve)]; }
 
-Status Assembly::update_places(Span<const double> q) {
+Status Assembly::update_places(Span<const double> q, bool derivatives) {
   if (has_places_ && std::memcmp(q.data(), q_.data(), q.size() * sizeof(double)) == 0) return {};
   std::copy(q.begin(), q.end(), q_.begin());
-  has_places_ = has_energy_ = has_jacobians_ = has_rows_ = has_row_jacobians_ = guard_checked_ = false;
+  has_places_ = has_idle_places_ = has_energy_ = has_jacobians_ = has_rows_ = has_row_jacobians_ = guard_checked_ =
+      false;
+  ++state_;
   for (SiteTable& table : tables_) {
+    if (!table.read) continue;
+    const Curve& curve = *scene_.curves[at(table.curve)];
+    Status status = derivatives ? table.update_values_and_jacobian(curve_q(table.curve), curve.coordinates)
+                                : table.update_values(curve_q(table.curve), curve.coordinates);
+    if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
+  }
+  has_places_ = true;
+  has_jacobians_ = derivatives;
+  return {};
+}
+
+Status Assembly::update_idle_places() {
+  if (has_idle_places_) return {};
+  for (SiteTable& table : tables_) {
+    if (table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
     Status status = table.update_values(curve_q(table.curve), curve.coordinates);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
-  has_places_ = true;
+  has_idle_places_ = true;
   return {};
 }
 
 Status Assembly::update_energy() {
   if (has_energy_) return {};
   std::fill(term_energy_.begin(), term_energy_.end(), 0.0);
-  for (SiteTable& table : tables_) std::fill(table.stress.begin(), table.stress.end(), 0.0);
+  for (SiteTable& table : tables_) {
+    if (table.pulls) std::fill(table.stress.begin(), table.stress.end(), 0.0);
+  }
   for (LawSlot& slot : laws_) {
     SiteTable& table = tables_[at(slot.table)];
     Status status = slot.law.evaluate(table, &term_energy_[at(slot.energy)]);
@@ -109,6 +118,7 @@ Status Assembly::update_energy() {
 Status Assembly::update_jacobians() {
   if (has_jacobians_) return {};
   for (SiteTable& table : tables_) {
+    if (!table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
     Status status = table.update_jacobian(curve_q(table.curve), curve.coordinates);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
@@ -122,6 +132,7 @@ Status Assembly::check_guard() {
   guard_checked_ = true;
   guard_status_ = {};
   if (!std::isfinite(guard_)) return guard_status_;
+  if (Status status = update_idle_places(); !status.ok()) return guard_status_ = std::move(status);
   for (std::size_t c = 0; c < scene_.constraints.size(); ++c) {
     const Travel travel = scene_.constraints[c].constraint->travel(*this);
     if (travel.fraction_of_clearance > guard_) {
@@ -175,18 +186,38 @@ Status Assembly::update_constraint(std::size_t index, bool jacobian) {
   evaluation.at = this;
   evaluation.residual = {row_.data() + rows.first_row, at(rows.rows())};
   if (jacobian) evaluation.jacobian = rows.jacobian;
+  evaluation.state = state_;
+  std::copy(rows.all_places.begin(), rows.all_places.end(), rows.jacobian_support.begin());
+  if (jacobian) evaluation.support = rows.jacobian_support;
   Status status = use.constraint->evaluate(evaluation);
   if (status.code == Code::left_window) return status;  // without text: this answer comes in the hot path
-  for (int r = 0; status.ok() && r < rows.rows(); ++r) {
-    if (std::isfinite(evaluation.residual[at(r)])) continue;
-    status = Status::failure(Code::failed, "row " + std::to_string(r) + " is not a finite number");
+  if (status.ok() && !all_finite(evaluation.residual.data(), evaluation.residual.size())) {
+    int row = 0;
+    while (std::isfinite(evaluation.residual[at(row)])) ++row;
+    status = Status::failure(Code::failed, "row " + std::to_string(row) + " is not a finite number");
   }
-  if (status.ok() && jacobian) status = check_rows(rows.jacobian, rows.jacobian_begin, "derivative");
+  if (status.ok() && jacobian) {
+    return check_rows(index, "derivative", rows.jacobian_support, rows.flawed_jacobian_row());
+  }
   return status.ok() ? status : named(std::move(status), "constraint '" + use.label + "'");
 }
 
+Status Assembly::check_rows(std::size_t index, const char* what, const std::vector<RowSupport>& support,
+                            int flawed_row) const {
+  int misfit = 0;
+  const int rows = constraints_[index].rows();
+  while (misfit < rows && constraints_[index].fits(misfit, support[at(misfit)])) ++misfit;
+  if (misfit == rows && flawed_row < 0) return {};
+  return Status::failure(
+      Code::failed, "constraint '" + scene_.constraints[index].label + "': " +
+                        (misfit < rows ? "row " + std::to_string(misfit) + " depends on places that it does not have"
+                                       : std::string("a ") + what + " of row " + std::to_string(flawed_row) +
+                                             " is not a finite number"));
+}
+
 Status Assembly::evaluate(Span<const double> q, const ProblemEvaluation& evaluation) noexcept {
-  if (Status status = update_places(q); !status.ok()) return status;
+  const bool derivatives = !evaluation.gradient.empty() || !evaluation.jacobian.empty();
+  if (Status status = update_places(q, derivatives); !status.ok()) return status;
   if (Status status = check_guard(); !status.ok()) return status;
   const bool wants_rows = !evaluation.rows.empty() || !evaluation.jacobian.empty();
   // A row that left its window makes the whole trial inadmissible, whatever was asked for.
@@ -197,13 +228,13 @@ Status Assembly::evaluate(Span<const double> q, const ProblemEvaluation& evaluat
     if (Status status = update_energy(); !status.ok()) return status;
     if (evaluation.energy != nullptr) *evaluation.energy = energy_;
   }
-  if (!evaluation.gradient.empty() || !evaluation.jacobian.empty()) {
+  if (derivatives) {
     if (Status status = update_jacobians(); !status.ok()) return status;
   }
   if (!evaluation.gradient.empty()) {
     std::fill(full_gradient_.begin(), full_gradient_.end(), 0.0);
     for (const SiteTable& table : tables_) {
-      if (table.declaration->site != Site::closure) table.add_gradient(table.stress, full_gradient_.data());
+      if (table.pulls) table.add_gradient(table.stress, full_gradient_.data());
     }
     for (std::size_t u = 0; u < free_.size(); ++u) {
       if (free_[u] >= 0) evaluation.gradient[at(free_[u])] = full_gradient_[u];
@@ -230,36 +261,42 @@ Status Assembly::update_row_hessians(Span<const double> multipliers) {
     ConstraintRows& rows = constraints_[c];
     RowEvaluation evaluation;
     evaluation.at = this;
+    evaluation.state = state_;
     evaluation.weight = {multipliers.data() + rows.first_row, at(rows.rows())};
     evaluation.hessian = rows.hessian;
+    std::copy(rows.all_places.begin(), rows.all_places.end(), rows.hessian_support.begin());
+    evaluation.support = rows.hessian_support;
     Status status = use.constraint->evaluate(evaluation);
-    if (status.ok()) status = check_rows(rows.hessian, rows.hessian_begin, "second derivative");
     if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
+    status = check_rows(c, "second derivative", rows.hessian_support, rows.flawed_hessian_row());
+    if (!status.ok()) return status;
   }
   return {};
 }
 
-void Assembly::set_total_stress(double energy_factor, Span<const double> multipliers) noexcept {
+void Assembly::set_total_stress(double energy_factor, Span<const double> multipliers, bool everywhere) noexcept {
   int row = 0;
   for (SiteTable& table : tables_) {
     if (table.declaration->site == Site::closure) {
       for (double& stress : table.total_stress) stress = multipliers[at(row++)];
-    } else {
+    } else if (everywhere || table.bends()) {
       for (std::size_t k = 0; k < table.stress.size(); ++k) table.total_stress[k] = energy_factor * table.stress[k];
     }
   }
-  for (const ConstraintRows& rows : constraints_) rows.add_stress(multipliers, tables_);
+  for (const ConstraintRows& rows : constraints_) {
+    if (everywhere || !rows.identity) rows.add_stress(multipliers, tables_);
+  }
 }
 
 Status Assembly::lagrangian_hessian(Span<const double> q, double energy_factor, Span<const double> multipliers,
                                     Span<double> values) noexcept {
-  if (Status status = update_places(q); !status.ok()) return status;
+  if (Status status = update_places(q, true); !status.ok()) return status;
   if (Status status = update_energy(); !status.ok()) return status;
   if (Status status = update_jacobians(); !status.ok()) return status;
   if (Status status = update_rows(true); !status.ok()) return status;
   std::fill(values.begin(), values.end(), 0.0);
 
-  set_total_stress(energy_factor, multipliers);
+  set_total_stress(energy_factor, multipliers, false);
   for (SiteTable& table : tables_) std::fill(table.modulus.begin(), table.modulus.end(), 0.0);
   for (LawSlot& slot : laws_) {
     if (Status status = slot.law.add_modulus(tables_[at(slot.table)]); !status.ok()) {
@@ -269,6 +306,7 @@ Status Assembly::lagrangian_hessian(Span<const double> q, double energy_factor, 
   if (Status status = update_row_hessians(multipliers); !status.ok()) return status;
   for (const ConstraintRows& rows : constraints_) rows.add_hessian(tables_, values);
   for (SiteTable& table : tables_) {
+    if (!table.read) continue;
     Status status = table.update_curvature(curve_q(table.curve), curve_of(table).coordinates);
     if (!status.ok()) return named(std::move(status), "curve '" + curve_of(table).name + "'");
     table.add_hessian(energy_factor, values.data());
@@ -304,6 +342,7 @@ void Assembly::retract(Span<const double> q, Span<const double> delta, Span<doub
 
 Status Assembly::accept(Span<const double> q) noexcept {
   if (Status status = update_places(q); !status.ok()) return status;
+  if (Status status = update_idle_places(); !status.ok()) return status;
   for (ConstraintUse& use : scene_.constraints) {
     Status status = use.constraint->accept(*this);
     if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
@@ -313,6 +352,7 @@ Status Assembly::accept(Span<const double> q) noexcept {
   }
   // Searches now start elsewhere: what was computed at this state may differ in its last bits.
   has_rows_ = has_row_jacobians_ = guard_checked_ = false;
+  ++state_;
   return {};
 }
 
@@ -324,7 +364,7 @@ bool Assembly::epoch_due() const noexcept {
 Status Assembly::new_epoch() noexcept {
   epoch_failure_ = bind_rows();
   if (!epoch_failure_.ok()) return epoch_failure_;
-  has_rows_ = has_row_jacobians_ = false;
+  has_places_ = false;  // rows may read sites that nothing has read before
   ++epochs_;
   return {};
 }
@@ -362,13 +402,15 @@ Status Assembly::term_energies(Span<const double> q, std::vector<double>& out) {
 }
 
 Status Assembly::full_gradient(Span<const double> q, Span<const double> multipliers, std::vector<double>& out) {
-  if (Status status = update_places(q); !status.ok()) return status;
+  if (Status status = update_places(q, true); !status.ok()) return status;
   if (Status status = update_energy(); !status.ok()) return status;
   if (Status status = update_jacobians(); !status.ok()) return status;
   if (Status status = update_rows(true); !status.ok()) return status;
-  set_total_stress(1.0, multipliers);
+  set_total_stress(1.0, multipliers, true);
   out.assign(at(scene_.unknowns), 0.0);
-  for (const SiteTable& table : tables_) table.add_gradient(table.total_stress, out.data());
+  for (const SiteTable& table : tables_) {
+    if (table.read) table.add_gradient(table.total_stress, out.data());
+  }
   return {};
 }
 
@@ -383,6 +425,7 @@ Status Assembly::site_stress(Span<const double> q, int curve, Site site, std::ve
 Status Assembly::report(Span<const double> q, int constraint, std::vector<RowReport>& out) {
   if (!epoch_failure_.ok()) return epoch_failure_;
   if (Status status = update_places(q); !status.ok()) return status;
+  if (Status status = update_idle_places(); !status.ok()) return status;
   return scene_.constraints[at(constraint)].constraint->report(*this, out);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
@@ -107,9 +108,12 @@ class Assembly final : public Problem, public PlaceTables {
   void make_patterns();
   void make_order();
   void make_scales();
-  ConstraintRows make_constraint_rows(const ConstraintUse& use, int first_row) const;
+  ConstraintRows make_constraint_rows(const ConstraintUse& use, int first_row);
 
-  Status update_places(Span<const double> q);
+  /// With `derivatives` the places' Jacobians too, which costs less than asking for them later.
+  Status update_places(Span<const double> q, bool derivatives = false);
+  /// The places that nothing reads in an evaluation, for what is read of an accepted state.
+  Status update_idle_places();
   Status update_energy();
   Status update_jacobians();
   Status check_guard();
@@ -119,8 +123,11 @@ class Assembly final : public Problem, public PlaceTables {
   Status update_row_hessians(Span<const double> multipliers);
   /// Brings every place's stress, and with `modulus` its modulus, to those of one energy alone.
   Status sum_term(Span<const double> q, int term, bool modulus);
-  /// Of the Lagrangian: energies, closure and constraints, at every place.
-  void set_total_stress(double energy_factor, Span<const double> multipliers) noexcept;
+  /// What a constraint said of its rows' supports, and wrote.
+  Status check_rows(std::size_t index, const char* what, const std::vector<RowSupport>& support, int flawed_row) const;
+  /// Of the Lagrangian: energies, closure and constraints, at every place, or only where y is not linear in the
+  /// unknowns.
+  void set_total_stress(double energy_factor, Span<const double> multipliers, bool everywhere) noexcept;
   const double* curve_q(int curve) const noexcept;
   const Curve& curve_of(const SiteTable& table) const noexcept;
 
@@ -146,7 +153,9 @@ class Assembly final : public Problem, public PlaceTables {
 
   // The state that the tables hold, and what of it has been computed.
   std::vector<double> q_;
-  bool has_places_ = false, has_energy_ = false, has_jacobians_ = false, has_rows_ = false, has_row_jacobians_ = false;
+  std::uint64_t state_ = 0;  // changes with the places, with what was accepted, and with the rows' binding
+  bool has_places_ = false, has_idle_places_ = false, has_energy_ = false, has_jacobians_ = false, has_rows_ = false,
+       has_row_jacobians_ = false;
   Status guard_status_, row_status_;
   bool guard_checked_ = false;
   double energy_ = 0.0;

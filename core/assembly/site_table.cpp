@@ -4,6 +4,9 @@
 #include <cmath>
 #include <string>
 
+#include "core/assembly/finite.hpp"
+#include "core/assembly/sizes.hpp"
+
 namespace bowstring {
 
 namespace {
@@ -13,30 +16,56 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr int max_values = 8;
 constexpr int max_width = 32;
 
-/// Lower triangle of BᵀCB for one place, C packed.
-void congruence(const double* modulus, const double* b, int values, int width, double* out) noexcept {
+// What the kinematics of this project have: loops over them know their lengths.
+constexpr int common_values = 4;
+constexpr int common_width = 11;
+
+/// Lower triangle of factor·BᵀCB for one place, C packed.
+template <int fixed_values, int fixed_width>
+inline void congruence(double factor, const double* modulus, const double* b, int values, int width,
+                       double* out) noexcept {
+  if constexpr (fixed_values != 0) values = fixed_values;
+  if constexpr (fixed_width != 0) width = fixed_width;
   double cb[max_values * max_width];
   for (int a = 0; a < values; ++a) {
-    for (int j = 0; j < width; ++j) {
-      double sum = 0.0;
-      for (int c = 0; c < values; ++c) {
-        sum += modulus[a >= c ? packed_index(a, c) : packed_index(c, a)] * b[c * width + j];
-      }
-      cb[a * width + j] = sum;
+    double* row = cb + a * width;
+    for (int j = 0; j < width; ++j) row[j] = 0.0;
+    for (int c = 0; c < values; ++c) {
+      const double entry = factor * modulus[a >= c ? packed_index(a, c) : packed_index(c, a)];
+      for (int j = 0; j < width; ++j) row[j] += entry * b[c * width + j];
     }
   }
   for (int i = 0; i < width; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      double sum = 0.0;
-      for (int a = 0; a < values; ++a) sum += b[a * width + i] * cb[a * width + j];
-      out[packed_index(i, j)] = sum;
+    for (int j = 0; j <= i; ++j) out[j] = b[i] * cb[j];
+    for (int a = 1; a < values; ++a) {
+      const double entry = b[a * width + i];
+      for (int j = 0; j <= i; ++j) out[j] += entry * cb[a * width + j];
     }
+    out += i + 1;
+  }
+}
+
+/// Adds the packed lower triangle of n unknowns to that of `width` ones, of which they are those from `first` on.
+inline void add_block(const double* block, int n, int first, double* out) noexcept {
+  for (int i = 0; i < n; ++i) {
+    double* row = out + packed_index(first + i, first);
+    for (int j = 0; j <= i; ++j) row[j] += *block++;
+  }
+}
+
+inline void scatter(const double* numbers, const int* position, int count, bool free, double* out) noexcept {
+  if (free) {
+    for (int k = 0; k < count; ++k) out[position[k]] += numbers[k];
+    return;
+  }
+  for (int k = 0; k < count; ++k) {
+    if (position[k] >= 0) out[position[k]] += numbers[k];
   }
 }
 
 /// What a kinematics wrote, place after place.
-Status screened(Status status, const std::vector<double>& numbers, const SiteDeclaration& site, const char* what) {
-  if (!status.ok()) return status;
+Status screened(const std::vector<double>& numbers, const SiteDeclaration& site, const char* what) {
+  if (all_finite(numbers.data(), numbers.size())) return {};
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     if (std::isfinite(numbers[k])) continue;
     const std::size_t place = k / (numbers.size() / at(site.count));
@@ -54,92 +83,116 @@ SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration
   table.curve = curve.view.index;
   table.kinematics = curve.kinematics.get();
   table.declaration = &declaration;
+  table.read = declaration.site == Site::node || declaration.site == Site::closure;
   const auto places = at(declaration.count);
   const auto numbers = places * at(declaration.values);
   table.y.assign(numbers, 0.0);
   table.stress.assign(numbers, 0.0);
   table.total_stress.assign(numbers, 0.0);
   if (!declaration.identity) table.jacobian.assign(numbers * at(declaration.width), 0.0);
-  if (table.bends()) table.curvature.assign(places * at(packed_size(declaration.width)), 0.0);
+  if (table.bends()) table.curvature.assign(places * at(packed_size(declaration.bent())), 0.0);
   table.unknown.reserve(declaration.stencil.size());
   for (const int local : declaration.stencil) table.unknown.push_back(local < 0 ? -1 : curve.unknown_begin + local);
   return table;
 }
 
-Status SiteTable::update_values(const double* curve_q, int coordinates) {
-  SiteEvaluation evaluation;
+bool SiteTable::needs_jacobian() const noexcept {
+  return !declaration->identity && !(declaration->linear && has_jacobian_);
+}
+
+Status SiteTable::ask(SiteEvaluation evaluation, const double* curve_q, int coordinates) {
   evaluation.site = declaration->site;
   evaluation.q = {curve_q, at(coordinates)};
+  if (Status status = kinematics->evaluate(evaluation); !status.ok()) return status;
+  if (!evaluation.values.empty()) {
+    if (Status status = screened(y, *declaration, "a value"); !status.ok()) return status;
+  }
+  if (!evaluation.jacobian.empty()) {
+    if (Status status = screened(jacobian, *declaration, "a derivative"); !status.ok()) return status;
+    has_jacobian_ = true;
+  }
+  return evaluation.curvature.empty() ? Status{} : screened(curvature, *declaration, "a second derivative");
+}
+
+Status SiteTable::update_values(const double* curve_q, int coordinates) {
+  SiteEvaluation evaluation;
   evaluation.values = y;
-  return screened(kinematics->evaluate(evaluation), y, *declaration, "a value");
+  return ask(evaluation, curve_q, coordinates);
 }
 
 Status SiteTable::update_jacobian(const double* curve_q, int coordinates) {
-  if (declaration->identity) return {};
+  if (!needs_jacobian()) return {};
   SiteEvaluation evaluation;
-  evaluation.site = declaration->site;
-  evaluation.q = {curve_q, at(coordinates)};
   evaluation.jacobian = jacobian;
-  return screened(kinematics->evaluate(evaluation), jacobian, *declaration, "a derivative");
+  return ask(evaluation, curve_q, coordinates);
+}
+
+Status SiteTable::update_values_and_jacobian(const double* curve_q, int coordinates) {
+  SiteEvaluation evaluation;
+  evaluation.values = y;
+  if (needs_jacobian()) evaluation.jacobian = jacobian;
+  return ask(evaluation, curve_q, coordinates);
 }
 
 Status SiteTable::update_curvature(const double* curve_q, int coordinates) {
   if (!bends()) return {};
   SiteEvaluation evaluation;
-  evaluation.site = declaration->site;
-  evaluation.q = {curve_q, at(coordinates)};
   evaluation.stress = total_stress;
   evaluation.curvature = curvature;
-  return screened(kinematics->evaluate(evaluation), curvature, *declaration, "a second derivative");
+  return ask(evaluation, curve_q, coordinates);
 }
 
 void SiteTable::add_gradient(const std::vector<double>& place_stress, double* out) const noexcept {
   const int ny = values();
-  const int w = width();
-  for (int i = 0; i < count(); ++i) {
-    const double* s = place_stress.data() + at(i) * at(ny);
-    const int* u = unknown.data() + at(i) * at(w);
-    if (declaration->identity) {
-      for (int j = 0; j < w; ++j) out[u[j]] += s[j];
-      continue;
-    }
-    const double* b = jacobian.data() + at(i) * at(ny) * at(w);
-    for (int j = 0; j < w; ++j) {
-      if (u[j] < 0) continue;
-      double sum = 0.0;
-      for (int a = 0; a < ny; ++a) sum += s[a] * b[a * w + j];
-      out[u[j]] += sum;
-    }
+  if (declaration->identity) {
+    for (std::size_t k = 0; k < unknown.size(); ++k) out[unknown[k]] += place_stress[k];
+    return;
   }
+  with_size<common_width>(width(), [&](auto fixed_width) {
+    const int w = fixed_width == 0 ? width() : fixed_width;
+    for (int i = 0; i < count(); ++i) {
+      const double* s = place_stress.data() + at(i) * at(ny);
+      const int* u = unknown.data() + at(i) * at(w);
+      const double* b = jacobian.data() + at(i) * at(ny) * at(w);
+      double sum[max_width];
+      for (int j = 0; j < w; ++j) sum[j] = s[0] * b[j];
+      for (int a = 1; a < ny; ++a) {
+        for (int j = 0; j < w; ++j) sum[j] += s[a] * b[a * w + j];
+      }
+      for (int j = 0; j < w; ++j) {
+        if (u[j] >= 0) out[u[j]] += sum[j];
+      }
+    }
+  });
 }
 
 void SiteTable::add_hessian(double factor, double* hessian) const noexcept {
   if (hessian_position.empty()) return;
-  const int ny = values();
-  const int w = width();
-  const int packed = packed_size(w);
-  double local[packed_size(max_width)];
-  for (int i = 0; i < count(); ++i) {
-    const int* position = hessian_position.data() + at(i) * at(packed);
-    if (modulus.empty()) {
-      std::fill(local, local + packed, 0.0);
-    } else {
-      const double* c = modulus.data() + at(i) * at(packed_size(ny));
-      if (declaration->identity) {
-        for (int k = 0; k < packed; ++k) local[k] = factor * c[k];
-      } else {
-        congruence(c, jacobian.data() + at(i) * at(ny) * at(w), ny, w, local);
-        for (int k = 0; k < packed; ++k) local[k] *= factor;
-      }
+  const int packed = packed_size(hessian_width());
+  if (modulus.empty() || declaration->identity) {
+    for (int i = 0; i < count(); ++i) {
+      const double* second = modulus.empty() ? curvature.data() : modulus.data();
+      double local[packed_size(max_width)];
+      for (int k = 0; k < packed; ++k) local[k] = (modulus.empty() ? 1.0 : factor) * second[at(i) * at(packed) + at(k)];
+      scatter(local, hessian_position.data() + at(i) * at(packed), packed, free[at(i)] != 0, hessian);
     }
-    if (!curvature.empty()) {
-      const double* bend = curvature.data() + at(i) * at(packed);
-      for (int k = 0; k < packed; ++k) local[k] += bend[k];
-    }
-    for (int k = 0; k < packed; ++k) {
-      if (position[k] >= 0) hessian[position[k]] += local[k];
-    }
+    return;
   }
+  // Laws do not read s, the last number of y where lengths vary.
+  const int stiff = values() - (declaration->lengths_vary ? 1 : 0);
+  const int bent = curvature.empty() ? 0 : declaration->bent();
+  with_size<common_values>(stiff, [&](auto fixed_values) {
+    with_size<common_width>(width(), [&](auto fixed_width) {
+      const int w = fixed_width == 0 ? width() : fixed_width;
+      double local[packed_size(max_width)];
+      for (int i = 0; i < count(); ++i) {
+        congruence<fixed_values, fixed_width>(factor, modulus.data() + at(i) * at(packed_size(values())),
+                                              jacobian.data() + at(i) * at(values()) * at(w), stiff, w, local);
+        add_block(curvature.data() + at(i) * at(packed_size(bent)), bent, declaration->bent_first, local);
+        scatter(local, hessian_position.data() + at(i) * at(packed_size(w)), packed_size(w), free[at(i)] != 0, hessian);
+      }
+    });
+  });
 }
 
 }  // namespace bowstring

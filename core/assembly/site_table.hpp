@@ -12,24 +12,31 @@ struct SiteTable {
   int curve = 0;
   const Kinematics* kinematics = nullptr;
   const SiteDeclaration* declaration = nullptr;
+  bool read = false;                  ///< by laws or rows, or at any rate: node positions and closure
+  bool pulls = false;                 ///< read by laws
   std::vector<double> y;              ///< count × values
   std::vector<double> accepted;       ///< y at the last accepted point, of stations and edges
   std::vector<double> jacobian;       ///< count × values × width; empty where B = I
   std::vector<double> stress;         ///< count × values: of the energies alone
   std::vector<double> total_stress;   ///< count × values: of the Lagrangian
   std::vector<double> modulus;        ///< count × packed_size(values); empty where nothing has one
-  std::vector<double> curvature;      ///< count × packed_size(width); empty where the site is linear
+  std::vector<double> curvature;      ///< count × packed_size(bent()); empty where the site is linear
   std::vector<int> unknown;           ///< count × width: scene-wide tangent number, −1 pads
-  std::vector<int> hessian_position;  ///< count × packed_size(width), −1 where an unknown is fixed
+  std::vector<int> hessian_position;  ///< count × packed_size(hessian_width()), −1 where an unknown is fixed
+  std::vector<char> free;             ///< count: none of those positions is −1
 
   int count() const noexcept { return declaration->count; }
   int values() const noexcept { return declaration->values; }
   int width() const noexcept { return declaration->width; }
   bool bends() const noexcept { return !declaration->identity && !declaration->linear; }
+  /// The unknowns of a stencil, from `hessian_first` on, that the place contributes second derivatives for.
+  int hessian_first() const noexcept { return modulus.empty() ? declaration->bent_first : 0; }
+  int hessian_width() const noexcept { return modulus.empty() ? declaration->bent() : declaration->width; }
 
   // A number that is not finite is `failed`, and names the place.
   Status update_values(const double* curve_q, int coordinates);
   Status update_jacobian(const double* curve_q, int coordinates);
+  Status update_values_and_jacobian(const double* curve_q, int coordinates);
   /// Σ total_stress ∂²y/∂δ² at every place.
   Status update_curvature(const double* curve_q, int coordinates);
 
@@ -37,6 +44,12 @@ struct SiteTable {
   void add_gradient(const std::vector<double>& place_stress, double* out) const noexcept;
   /// hessian += factor · BᵀCB + curvature, through `hessian_position`.
   void add_hessian(double factor, double* hessian) const noexcept;
+
+ private:
+  bool needs_jacobian() const noexcept;
+  Status ask(SiteEvaluation evaluation, const double* curve_q, int coordinates);
+
+  bool has_jacobian_ = false;  // of a linear site, which has the same one at every state
 };
 
 SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration);

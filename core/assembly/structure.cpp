@@ -92,6 +92,7 @@ void Assembly::make_tables() {
       if (index < 0) continue;  // the kinematics has no such place: the scene has already said so
       SiteTable& table = tables_[at(index)];
       laws_.push_back({e, index, LawAssembly(law, table, reference_y[at(index)])});
+      table.read = table.pulls = true;
       if (!law.description.linear || table.declaration->lengths_vary) {
         table.modulus.assign(at(table.count() * packed_size(table.values())), 0.0);
       }
@@ -99,7 +100,7 @@ void Assembly::make_tables() {
   }
 }
 
-ConstraintRows Assembly::make_constraint_rows(const ConstraintUse& use, int first_row) const {
+ConstraintRows Assembly::make_constraint_rows(const ConstraintUse& use, int first_row) {
   ConstraintRows out;
   out.first_row = first_row;
   const RowDeclaration& rows = use.rows;
@@ -108,7 +109,7 @@ ConstraintRows Assembly::make_constraint_rows(const ConstraintUse& use, int firs
   out.hessian_begin.assign(1, 0);
   out.unknown_begin.assign(1, 0);
   for (int r = 0; r < rows.rows; ++r) {
-    int numbers = 0;
+    int numbers = 0, unknowns = 0;
     for (int p = rows.place_begin[at(r)]; p < rows.place_begin[at(r) + 1]; ++p) {
       const Place& place = rows.places[at(p)];
       const int index = table_of_[at(place.curve * site_count + static_cast<int>(place.site))];
@@ -117,10 +118,13 @@ ConstraintRows Assembly::make_constraint_rows(const ConstraintUse& use, int firs
                                  " reads a place that curve '" + scene_.curves[at(place.curve)]->name +
                                  "' does not have");
       }
-      const SiteTable& table = tables_[at(index)];
-      out.reads.push_back({index, place.index, table.values(), table.width(), table.declaration->identity});
+      SiteTable& table = tables_[at(index)];
+      table.read = true;
+      out.reads.push_back(
+          {index, place.index, table.values(), table.width(), numbers, unknowns, table.declaration->identity});
       out.identity = out.identity && table.declaration->identity;
       numbers += table.values();
+      unknowns += table.width();
       for (int k = 0; k < table.width(); ++k) {
         const int unknown = table.unknown[at(place.index * table.width() + k)];
         out.unknown.push_back(unknown < 0 ? -1 : free_[at(unknown)]);
@@ -197,12 +201,16 @@ void Assembly::make_patterns() {
       free_stencil.push_back(unknown < 0 ? -1 : free_[at(unknown)]);
     }
   };
-  const auto has_second_order = [](const SiteTable& table) { return !table.modulus.empty() || table.bends(); };
+  const auto has_second_order = [](const SiteTable& table) {
+    return !table.modulus.empty() || (table.read && table.bends());
+  };
 
   for (const SiteTable& table : tables_) {
     for (int i = 0; i < table.count(); ++i) {
       stencil(table, i);
-      if (has_second_order(table)) hessian_pattern_.couple(blocks_, free_stencil.data(), table.width());
+      if (has_second_order(table)) {
+        hessian_pattern_.couple(blocks_, free_stencil.data() + table.hessian_first(), table.hessian_width());
+      }
       if (table.declaration->site != Site::closure) continue;
       for (int a = 0; a < table.values(); ++a) jacobian_pattern_.add_row(free_stencil.data(), table.width());
     }
@@ -221,17 +229,23 @@ void Assembly::make_patterns() {
   int row = 0;
   for (SiteTable& table : tables_) {
     table.hessian_position.clear();
+    table.free.clear();
     const bool closure = table.declaration->site == Site::closure;
     for (int i = 0; i < table.count(); ++i) {
       stencil(table, i);
       if (has_second_order(table)) {
-        for (int a = 0; a < table.width(); ++a) {
-          for (int b = 0; b <= a; ++b) {
+        const int first = table.hessian_first(), end = first + table.hessian_width();
+        char free = 1;
+        for (int a = first; a < end; ++a) {
+          for (int b = first; b <= a; ++b) {
             const int ua = free_stencil[at(a)];
             const int ub = free_stencil[at(b)];
-            table.hessian_position.push_back(ua < 0 || ub < 0 ? -1 : hessian_pattern_.position(blocks_, ua, ub));
+            const bool held = ua < 0 || ub < 0;
+            if (held) free = 0;
+            table.hessian_position.push_back(held ? -1 : hessian_pattern_.position(blocks_, ua, ub));
           }
         }
+        table.free.push_back(free);
       }
       if (!closure) continue;
       for (int a = 0; a < table.values(); ++a, ++row) {

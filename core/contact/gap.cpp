@@ -229,6 +229,51 @@ ChordDerivatives chord_derivatives(const Centerline& curve, const WirePoint& poi
   return {p.t, sigma_moves ? p.t_t - p.sigma_t * p.sigma_t / p.sigma_sigma : p.t_t};
 }
 
+/// weight·(φ_zz − φ_zη φ_ηη⁻¹ φ_ηz), packed. With d = Σ_a w_a z_a it is, by blocks of nodes a and b,
+///   φ_zz = w_a w_b (2 F_r I + 4 F_rr d dᵀ),   φ_zη = 2 w_a (F_rr r_η + F_rc c_η) d + 2 F_r (w_{a,η} d + w_a d_η).
+template <int dim>
+void write_hessian(const GapExpansion& e, double weight, double* out) noexcept {
+  constexpr int most = (2 + max_stencil) * dim;
+  const bool sigma_moves = e.sigma_sigma != 0.0, t_moves = e.t_t != 0.0;
+  const int blocks = e.wire_nodes + e.nodes.count;
+  double by_sigma[most], by_t[most], along[most];
+  for (int a = 0; a < blocks; ++a) {
+    const double w = e.weight[a];
+    const double w_sigma = a < e.wire_nodes ? 0.0 : e.weight_sigma[a - e.wire_nodes];
+    const double w_t = e.wire_nodes == 1 || a > 1 ? 0.0 : (a == 0 ? -1.0 : 1.0);
+    for (int i = 0; i < dim; ++i) {
+      const int k = a * dim + i;
+      by_sigma[k] = (e.along_sigma * w + e.first * w_sigma) * e.d[i] - e.first * w * e.slope[i];
+      by_t[k] = (e.along_t * w + e.first * w_t) * e.d[i] + e.first * w * e.chord[i];
+      along[k] = w * e.d[i];
+    }
+  }
+  if (sigma_moves && t_moves) {
+    for (int k = 0; k < blocks * dim; ++k) by_t[k] -= by_sigma[k] * e.sigma_t / e.sigma_sigma;
+  }
+
+  const double from_sigma = sigma_moves ? weight / e.sigma_sigma : 0.0;
+  const double from_t = t_moves ? weight / e.t_t : 0.0;
+  for (int a = 0; a < blocks; ++a) {
+    const double diagonal = weight * e.first * e.weight[a];
+    for (int i = 0; i < dim; ++i) {
+      const int row = a * dim + i;
+      const double minus_sigma = -from_sigma * by_sigma[row];
+      for (int column = 0; column <= row; ++column) out[column] = minus_sigma * by_sigma[column];
+      if (t_moves) {
+        const double minus_t = from_t * by_t[row];
+        for (int column = 0; column <= row; ++column) out[column] -= minus_t * by_t[column];
+      }
+      if (e.second != 0.0) {
+        const double second = weight * e.second * along[row];
+        for (int column = 0; column <= row; ++column) out[column] += second * along[column];
+      }
+      for (int b = 0; b <= a; ++b) out[b * dim + i] += diagonal * e.weight[b];
+      out += row + 1;
+    }
+  }
+}
+
 /// One monotone assignment of wire points to samples of a curve, by dynamic programming over the points.
 class MonotoneBinding {
  public:
@@ -418,66 +463,57 @@ NodeRange gap_derivatives(const Centerline& curve, const double* x, GapShape sha
   return gap_derivatives(curve, point, shape.form, closest, gradient, weight, hessian);
 }
 
-NodeRange gap_derivatives(const Centerline& curve, const WirePoint& point, GapForm form, const ClosestPoint& closest,
-                          double* gradient, double weight, double* hessian) noexcept {
-  const int dim = curve.dimension;
-  const Stencil nodes = stencil(curve.interpolation, closest.at, curve.nodes);
+GapExpansion expand_gap(const Centerline& curve, const WirePoint& point, GapForm form,
+                        const ClosestPoint& closest) noexcept {
   const GapPartials p = gap_partials(curve, point, form, closest);
-
-  // With z_a the nodes of the wire and of the wall, d = Σ_a w_a z_a: ∂d/∂z_a = w_a I, ∂²d/∂z_a∂σ = w_{a,σ} I, and so
-  // for t.
-  constexpr int most = 2 + max_stencil;
-  const int blocks = point.nodes + nodes.nodes.count;
-  double w[most] = {1.0}, w_sigma[most] = {}, w_t[most] = {};
+  const Stencil nodes = stencil(curve.interpolation, closest.at, curve.nodes);
+  GapExpansion e;
+  e.dimension = curve.dimension;
+  e.wire_nodes = point.nodes;
+  e.nodes = nodes.nodes;
+  std::copy_n(p.d, 3, e.d);
+  std::copy_n(p.slope, 3, e.slope);
+  e.first = 2.0 * p.f.r;
+  e.second = 4.0 * p.f.rr;
+  e.weight[0] = 1.0;
   if (point.nodes == 2) {
-    w[0] = 1.0 - point.t, w[1] = point.t;
-    w_t[0] = -1.0, w_t[1] = 1.0;
+    e.weight[0] = 1.0 - point.t, e.weight[1] = point.t;
+    std::copy_n(p.chord, 3, e.chord);
   }
   for (int k = 0; k < nodes.nodes.count; ++k) {
-    w[point.nodes + k] = -nodes.value[k];
-    w_sigma[point.nodes + k] = -nodes.slope[k];
+    e.weight[point.nodes + k] = -nodes.value[k];
+    e.weight_sigma[k] = -nodes.slope[k];
   }
-
-  if (gradient) {
-    for (int a = 0; a < blocks; ++a) {
-      for (int i = 0; i < dim; ++i) gradient[a * dim + i] = 2.0 * p.f.r * w[a] * p.d[i];
-    }
-  }
-  if (!hessian) return nodes.nodes;
-
-  // φ_zη by blocks: 2 w_a (F_rr r_η + F_rc c_η) d + 2 F_r (w_{a,η} d + w_a d_η). What moves is eliminated one after the
-  // other: first σ, then t from what that leaves.
+  // What moves is eliminated one after the other: first σ, then t from what that leaves.
   const bool sigma_moves = closest.location == Location::interior && p.sigma_sigma > 0.0;
-  const double t_second = sigma_moves ? p.t_t - p.sigma_t * p.sigma_t / p.sigma_sigma : p.t_t;
-  const bool t_moves = point.extremal && t_second != 0.0;
-  const double along_sigma = 2.0 * (p.f.rr * p.r_sigma + p.f.rc * p.c_sigma);
-  const double along_t = 2.0 * (p.f.rr * p.r_t + p.f.rc * p.c_t);
-  double by_sigma[3 * most] = {}, by_t[3 * most] = {};
-  for (int a = 0; a < blocks; ++a) {
-    for (int i = 0; i < dim; ++i) {
-      const int k = a * dim + i;
-      if (sigma_moves) {
-        by_sigma[k] = (along_sigma * w[a] + 2.0 * p.f.r * w_sigma[a]) * p.d[i] - 2.0 * p.f.r * w[a] * p.slope[i];
-      }
-      if (!t_moves) continue;
-      by_t[k] = (along_t * w[a] + 2.0 * p.f.r * w_t[a]) * p.d[i] + 2.0 * p.f.r * w[a] * p.chord[i];
-      if (sigma_moves) by_t[k] -= by_sigma[k] * p.sigma_t / p.sigma_sigma;
-    }
+  if (sigma_moves) {
+    e.sigma_sigma = p.sigma_sigma;
+    e.sigma_t = p.sigma_t;
   }
+  if (point.extremal) e.t_t = sigma_moves ? p.t_t - p.sigma_t * p.sigma_t / p.sigma_sigma : p.t_t;
+  e.along_sigma = 2.0 * (p.f.rr * p.r_sigma + p.f.rc * p.c_sigma);
+  e.along_t = 2.0 * (p.f.rr * p.r_t + p.f.rc * p.c_t);
+  return e;
+}
 
-  const double from_sigma = sigma_moves ? weight / p.sigma_sigma : 0.0;
-  const double from_t = t_moves ? weight / t_second : 0.0;
-  double* out = hessian;
-  for (int row = 0; row < blocks * dim; ++row) {
-    const int a = row / dim, i = row % dim;
-    for (int column = 0; column <= row; ++column) {
-      const int b = column / dim, j = column % dim;
-      const double block = (i == j ? 2.0 * p.f.r : 0.0) + 4.0 * p.f.rr * p.d[i] * p.d[j];
-      *out++ = weight * w[a] * w[b] * block - from_sigma * by_sigma[row] * by_sigma[column] -
-               from_t * by_t[row] * by_t[column];
-    }
+void gap_gradient(const GapExpansion& e, double factor, double* out) noexcept {
+  double along[3];
+  for (int i = 0; i < 3; ++i) along[i] = factor * e.first * e.d[i];
+  for (int a = 0; a < e.wire_nodes + e.nodes.count; ++a) {
+    for (int i = 0; i < e.dimension; ++i) *out++ = e.weight[a] * along[i];
   }
-  return nodes.nodes;
+}
+
+void gap_hessian(const GapExpansion& expansion, double weight, double* out) noexcept {
+  expansion.dimension == 2 ? write_hessian<2>(expansion, weight, out) : write_hessian<3>(expansion, weight, out);
+}
+
+NodeRange gap_derivatives(const Centerline& curve, const WirePoint& point, GapForm form, const ClosestPoint& closest,
+                          double* gradient, double weight, double* hessian) noexcept {
+  const GapExpansion expansion = expand_gap(curve, point, form, closest);
+  if (gradient != nullptr) gap_gradient(expansion, 1.0, gradient);
+  if (hessian != nullptr) gap_hessian(expansion, weight, hessian);
+  return expansion.nodes;
 }
 
 void bind_along(const Centerline& curve, const double* points, int count, double* sigma) {

@@ -100,11 +100,31 @@ struct ChordExtremum {
 ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
                              double start) noexcept;
 
-/// Derivatives of h at a closest point in z = (wire nodes, nodes of the segment's stencil), by the envelope theorem:
+/// h to second order at a closest point, in z = (wire nodes, nodes of the segment's stencil), by the envelope theorem:
 /// ∇h = φ_z at fixed σ* and t*, ∇²h = φ_zz − φ_zη φ_ηη⁻¹ φ_ηz with η what moves with z: σ at an interior minimum, t at
-/// an interior extremum of the chord. `gradient`: (wire nodes + count)·dimension numbers, the wire's first, then the
-/// nodes in order; null where not wanted. `hessian`: `weight`·∇²h as packed lower triangle of that order, row by row;
-/// null where not wanted. Returns the nodes; at most `max_stencil` of them.
+/// an interior extremum of the chord.
+struct GapExpansion {
+  int dimension = 3, wire_nodes = 1;
+  NodeRange nodes;                          ///< of the centerline; at most `max_stencil`
+  double d[3] = {};                         ///< x − q(σ*) = Σ weight_a z_a
+  double slope[3] = {}, chord[3] = {};      ///< q', and ∂x/∂t
+  double weight[2 + max_stencil] = {};      ///< of the wire's nodes first
+  double weight_sigma[max_stencil] = {};    ///< ∂weight/∂σ of the centerline's nodes
+  double first = 0.0, second = 0.0;         ///< 2 F_r, 4 F_rr
+  double along_sigma = 0.0, along_t = 0.0;  ///< 2 (F_rr r_η + F_rc c_η)
+  double sigma_sigma = 0.0;                 ///< φ_σσ; 0 where σ does not move
+  double sigma_t = 0.0;                     ///< φ_σt; 0 where σ does not move
+  double t_t = 0.0;                         ///< φ_tt with σ eliminated; 0 where t does not move
+};
+GapExpansion expand_gap(const Centerline& curve, const WirePoint& point, GapForm form,
+                        const ClosestPoint& closest) noexcept;
+
+/// factor·∇h: (wire_nodes + nodes.count)·dimension numbers, the wire's first, then the centerline's nodes in order.
+void gap_gradient(const GapExpansion& expansion, double factor, double* out) noexcept;
+/// weight·∇²h as packed lower triangle of that order, row by row.
+void gap_hessian(const GapExpansion& expansion, double weight, double* out) noexcept;
+
+/// Both at once, null where not wanted; `weight` is of the Hessian alone. Returns the nodes.
 NodeRange gap_derivatives(const Centerline& curve, const WirePoint& point, GapForm form, const ClosestPoint& closest,
                           double* gradient, double weight, double* hessian) noexcept;
 

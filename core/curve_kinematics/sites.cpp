@@ -64,6 +64,7 @@ SiteDeclaration station_site(const CurveMesh& mesh, int components, int width, c
   site.lengths_vary = mesh.sliding();
   site.values = components + (site.lengths_vary ? 2 : 0);
   site.width = width;
+  site.bent_count = width - (site.lengths_vary ? 1 : 0);
   site.stencil.assign(at(site.count * width), -1);
   for (int k = 0; k < site.count; ++k) {
     const Station& station = mesh.stations[at(k)];

@@ -43,13 +43,12 @@ class StationOutput {
   /// Of ζ's part of the stress.
   Vector<m> stress(int index) const noexcept { return Vector<m>::load(out_->stress.data() + index * values()); }
 
-  /// ds and s are linear in L and bring nothing.
+  /// Lower triangle. ds and s are linear in L, which the site declares.
   void write_curvature(int index, const Matrix<columns, columns>& by_unknowns) const noexcept {
-    double* h = out_->curvature.data() + index * packed_size(width());
+    double* h = out_->curvature.data() + index * packed_size(columns);
     for (int i = 0; i < columns; ++i) {
       for (int j = 0; j <= i; ++j) *h++ = by_unknowns(i, j);
     }
-    std::fill(h, h + varying_ * width(), 0.0);
   }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,15 @@ class PlaceTables {
   virtual const double* table(int curve, Site site) const noexcept = 0;
 };
 
+/// Which of its places a row depends on at one state: its first `lead` ones, and `count` ones from its place `first`
+/// on.
+struct RowSupport {
+  int lead = 0, first = 0, count = 0;
+  int places() const noexcept { return lead + count; }
+  /// The k-th of them, counted among all places of the row.
+  int place(int k) const noexcept { return k < lead ? k : first + k - lead; }
+};
+
 /// Outputs are caller-owned and left alone when empty. Row r's numbers come in the order of its places.
 struct RowEvaluation {
   const PlaceTables* at = nullptr;
@@ -49,6 +59,13 @@ struct RowEvaluation {
   Span<double> jacobian;      ///< row after row: ∂r/∂y over all places of the row
   Span<const double> weight;  ///< rows, read only for `hessian`
   Span<double> hessian;       ///< row after row: packed lower triangle of weight·∂²r/∂y²
+  /// rows; all places of each row, or empty. A row that depends on fewer of them at this state (its window covers more
+  /// than the segment of its closest point) may narrow its entry: of its numbers in `jacobian` and `hessian`, which
+  /// begin where they always do, those of these places then come first, packed, and the rest is not read.
+  Span<RowSupport> support;
+  /// The same number means that `at` holds the same places as in the last call that had it, and that nothing was
+  /// accepted or bound in between: what was found then may serve again. 0: unknown.
+  std::uint64_t state = 0;
 };
 
 /// The largest motion of a row's point relative to its wall, transverse to it, since the last `accept`.

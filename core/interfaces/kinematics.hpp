@@ -38,10 +38,14 @@ struct SiteDeclaration {
   int values = 0;               ///< numbers in y, (ds, s) included where they vary
   bool lengths_vary = false;    ///< the last two numbers of y are ds and s
   bool identity = false;        ///< ∂y/∂δ = I, no curvature: the stencil is the unknown itself
-  bool linear = false;          ///< no curvature
+  bool linear = false;          ///< no curvature: B is the same at every state
   int width = 0;                ///< unknowns in a stencil
   std::vector<int> stencil;     ///< count × width; −1 pads
   std::vector<double> ds, arc;  ///< count: length of material and arc coordinate at the start
+  /// The unknowns bent_first … bent_first + bent() − 1 of a stencil are those that y is not linear in: curvature is
+  /// over them alone. bent_count = −1: to the stencil's end.
+  int bent_first = 0, bent_count = -1;
+  int bent() const noexcept { return bent_count >= 0 ? bent_count : width - bent_first; }
 };
 
 struct KinematicsDeclaration {
@@ -57,7 +61,7 @@ struct SiteEvaluation {
   Span<double> values;        ///< count × values: y
   Span<double> jacobian;      ///< count × values × width: B = ∂y/∂δ at δ = 0
   Span<const double> stress;  ///< count × values, read only for `curvature`
-  Span<double> curvature;     ///< count × packed_size(width): Σ_a stress_a ∂²y_a/∂δ²
+  Span<double> curvature;     ///< count × packed_size(bent()): Σ_a stress_a ∂²y_a/∂δ²
 };
 
 /// Position and orientation of material points of the curve.

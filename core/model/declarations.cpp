@@ -111,6 +111,9 @@ std::string flaw_of(const KinematicsDeclaration& declaration, int unknowns) {
     if (!stencil_fits || !known || site.values > most_values || site.width > most_width) {
       return "declares a site whose stencil does not fit its unknowns";
     }
+    if (site.bent_first < 0 || site.bent() < 0 || site.bent_first > site.width - site.bent()) {
+      return "declares a site that bends in unknowns that its stencil does not have";
+    }
   }
   return has_nodes ? "" : "declares no node positions";
 }

@@ -137,6 +137,7 @@ SiteDeclaration EdgeFrames::closure() const {
   const int m = tangent_count(manifold_, 1);
   const bool varying = mesh_.sliding() || mesh_.stretching();
   SiteDeclaration site = closure_site(mesh_, closed_edges_, d, 2 * d + m + (varying ? 1 : 0));
+  site.bent_first = 2 * d;
   for (const int edge : closed_edges_) {
     for (int k = 0; k < d; ++k) site.stencil.push_back(position_.unknown_of(edge) + k);
     for (int k = 0; k < d; ++k) site.stencil.push_back(position_.unknown_of(edge + 1) + k);
@@ -282,12 +283,12 @@ void EdgeFrames::evaluate_closure(const SiteEvaluation& out) const noexcept {
     if (!out.curvature.empty()) {
       const Vector<d> weight = Vector<d>::load(out.stress.data() + k * d);
       const Matrix<m, m> bend = tangent_curvature(orientation, weight);
-      double* h = out.curvature.data() + k * packed_size(width);
-      std::fill(h, h + packed_size(width), 0.0);
+      double* h = out.curvature.data() + k * packed_size(width - 2 * d);
       for (int i = 0; i < m; ++i) {
-        for (int j = 0; j <= i; ++j) h[packed_index(2 * d + i, 2 * d + j)] = -length.at(unknown) * bend(i, j);
-        if (varying) h[packed_index(fixed_columns, 2 * d + i)] = -length.slope * dot(weight, gradient.column(i));
+        for (int j = 0; j <= i; ++j) h[packed_index(i, j)] = -length.at(unknown) * bend(i, j);
+        if (varying) h[packed_index(m, i)] = -length.slope * dot(weight, gradient.column(i));
       }
+      if (varying) h[packed_index(m, m)] = 0.0;
     }
   }
 }

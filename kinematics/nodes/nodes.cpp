@@ -314,6 +314,7 @@ SiteDeclaration Nodes::edge_lengths() const {
   const int d = mesh_.dimension();
   const int width = 2 * d + (mesh_.sliding() ? 1 : 0);
   SiteDeclaration site = mesh_.stretching() ? edge_site(mesh_, width) : closure_site(mesh_, measured_edges_, 1, width);
+  site.bent_count = 2 * d;
   for (const int edge : measured_edges_) {
     for (int k = 0; k < 2 * d; ++k) site.stencil.push_back(position_.unknown_of(edge) + k);
     if (mesh_.sliding()) site.stencil.push_back(length_.unknown);
@@ -426,8 +427,7 @@ Status Nodes::evaluate_edge_lengths(const SiteEvaluation& out) const noexcept {
     }
     if (!out.curvature.empty()) {
       const double scale = out.stress[at(k)] / measured;
-      double* h = out.curvature.data() + k * packed_size(width);
-      std::fill(h, h + packed_size(width), 0.0);
+      double* h = out.curvature.data() + k * packed_size(2 * d);
       for (int i = 0; i < d; ++i) {
         for (int j = 0; j < d; ++j) {
           const double entry = scale * ((i == j ? 1.0 : 0.0) - t[i] * t[j]);

@@ -126,15 +126,15 @@ struct DeclaredCurve {
   /// unknowns × unknowns: Σ stress ∂²y/∂δ² over all places.
   std::vector<double> curvature(Site which, const std::vector<double>& q, const std::vector<double>& stress) const {
     const SiteDeclaration& s = site(which);
-    const int packed = packed_size(s.width);
+    const int packed = packed_size(s.bent());
     std::vector<double> local(at(s.count * packed), 1e300);
     SiteEvaluation evaluation{which, q, {}, {}, stress, local};
     require(kinematics.evaluate(evaluation));
     const int n = unknowns();
     std::vector<double> out(at(n * n), 0.0);
     for (int place = 0; place < s.count; ++place) {
-      const int* stencil = s.stencil.data() + place * s.width;
-      for (int i = 0; i < s.width; ++i) {
+      const int* stencil = s.stencil.data() + place * s.width + s.bent_first;
+      for (int i = 0; i < s.bent(); ++i) {
         for (int j = 0; j <= i; ++j) {
           if (stencil[i] < 0 || stencil[j] < 0) continue;
           const double entry = local[at(place * packed + packed_index(i, j))];
