@@ -233,14 +233,13 @@ class WallContact final : public Constraint {
     contact::GapExpansion expansion;
   };
   struct FoundState {
-    const PlaceTables* at = nullptr;
     std::uint64_t state = 0;  // 0: nothing
     bool expanded = false;
     std::vector<Found> rows;  // of active_
   };
 
   Status find(const RowEvaluation& evaluation, const Wall& wall, const double* wire, bool derivatives) const noexcept {
-    if (evaluation.state == 0 || evaluation.state != found_.state || evaluation.at != found_.at) {
+    if (evaluation.state == 0 || evaluation.state != found_.state) {
       found_.state = 0;
       found_.expanded = false;
       for (std::size_t r = 0; r < active_.size(); ++r) {
@@ -248,7 +247,6 @@ class WallContact final : public Constraint {
         point = locate(rows_[active_[r]], wall, wire);
         if (point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
       }
-      found_.at = evaluation.at;
       found_.state = evaluation.state;
     }
     if (!derivatives || found_.expanded) return {};

@@ -1,6 +1,7 @@
 #include "core/assembly/assembly.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
@@ -22,6 +23,12 @@ constexpr double largest_turn = 0.78539816339744830962;  // of a station, in one
 Status named(Status status, const std::string& what) {
   if (!status.ok()) status.text = what + ": " + status.text;
   return status;
+}
+
+/// A number that no other state in this process has: a scene may outlive its assemblies, and its plugins remember.
+std::uint64_t new_state() noexcept {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
 }
 
 }  // namespace
@@ -59,8 +66,9 @@ const double* Assembly::table(int curve, Site site) const noexcept {
   return found == nullptr ? nullptr : found->y.data();
 }
 
-const double* Assembly::curve_q(int curve) const noexcept {
-  return q_.data() + scene_.curves[at(curve)]->coordinate_begin;
+Span<const double> Assembly::curve_q(int curve) const noexcept {
+  const Curve& c = *scene_.curves[at(curve)];
+  return {q_.data() + c.coordinate_begin, at(c.coordinates)};
 }
 
 const Curve& Assembly::curve_of(const SiteTable& table) const noexcept { return *scene_.curves[at(table.curve)]; }
@@ -70,12 +78,12 @@ Status Assembly::update_places(Span<const double> q, bool derivatives) {
   std::copy(q.begin(), q.end(), q_.begin());
   has_places_ = has_idle_places_ = has_energy_ = has_jacobians_ = has_rows_ = has_row_jacobians_ = guard_checked_ =
       false;
-  ++state_;
+  state_ = new_state();
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = derivatives ? table.update_values_and_jacobian(curve_q(table.curve), curve.coordinates)
-                                : table.update_values(curve_q(table.curve), curve.coordinates);
+    Status status = derivatives ? table.update_values_and_jacobian(curve_q(table.curve), state_)
+                                : table.update_values(curve_q(table.curve), state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_places_ = true;
@@ -88,7 +96,7 @@ Status Assembly::update_idle_places() {
   for (SiteTable& table : tables_) {
     if (table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = table.update_values(curve_q(table.curve), curve.coordinates);
+    Status status = table.update_values(curve_q(table.curve), state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_idle_places_ = true;
@@ -120,7 +128,7 @@ Status Assembly::update_jacobians() {
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = table.update_jacobian(curve_q(table.curve), curve.coordinates);
+    Status status = table.update_jacobian(curve_q(table.curve), state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_jacobians_ = true;
@@ -307,7 +315,7 @@ Status Assembly::lagrangian_hessian(Span<const double> q, double energy_factor, 
   for (const ConstraintRows& rows : constraints_) rows.add_hessian(tables_, values);
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
-    Status status = table.update_curvature(curve_q(table.curve), curve_of(table).coordinates);
+    Status status = table.update_curvature(curve_q(table.curve), state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve_of(table).name + "'");
     table.add_hessian(energy_factor, values.data());
   }
@@ -352,7 +360,7 @@ Status Assembly::accept(Span<const double> q) noexcept {
   }
   // Searches now start elsewhere: what was computed at this state may differ in its last bits.
   has_rows_ = has_row_jacobians_ = guard_checked_ = false;
-  ++state_;
+  state_ = new_state();
   return {};
 }
 

@@ -128,7 +128,7 @@ class Assembly final : public Problem, public PlaceTables {
   /// Of the Lagrangian: energies, closure and constraints, at every place, or only where y is not linear in the
   /// unknowns.
   void set_total_stress(double energy_factor, Span<const double> multipliers, bool everywhere) noexcept;
-  const double* curve_q(int curve) const noexcept;
+  Span<const double> curve_q(int curve) const noexcept;
   const Curve& curve_of(const SiteTable& table) const noexcept;
 
   Scene& scene_;
@@ -153,7 +153,7 @@ class Assembly final : public Problem, public PlaceTables {
 
   // The state that the tables hold, and what of it has been computed.
   std::vector<double> q_;
-  std::uint64_t state_ = 0;  // changes with the places, with what was accepted, and with the rows' binding
+  std::uint64_t state_ = 0;  // of SiteEvaluation and RowEvaluation: new with q_, with what is accepted and bound
   bool has_places_ = false, has_idle_places_ = false, has_energy_ = false, has_jacobians_ = false, has_rows_ = false,
        has_row_jacobians_ = false;
   Status guard_status_, row_status_;

@@ -100,9 +100,10 @@ bool SiteTable::needs_jacobian() const noexcept {
   return !declaration->identity && !(declaration->linear && has_jacobian_);
 }
 
-Status SiteTable::ask(SiteEvaluation evaluation, const double* curve_q, int coordinates) {
+Status SiteTable::ask(SiteEvaluation evaluation, Span<const double> curve_q, std::uint64_t state) {
   evaluation.site = declaration->site;
-  evaluation.q = {curve_q, at(coordinates)};
+  evaluation.q = curve_q;
+  evaluation.state = state;
   if (Status status = kinematics->evaluate(evaluation); !status.ok()) return status;
   if (!evaluation.values.empty()) {
     if (Status status = screened(y, *declaration, "a value"); !status.ok()) return status;
@@ -114,32 +115,32 @@ Status SiteTable::ask(SiteEvaluation evaluation, const double* curve_q, int coor
   return evaluation.curvature.empty() ? Status{} : screened(curvature, *declaration, "a second derivative");
 }
 
-Status SiteTable::update_values(const double* curve_q, int coordinates) {
+Status SiteTable::update_values(Span<const double> curve_q, std::uint64_t state) {
   SiteEvaluation evaluation;
   evaluation.values = y;
-  return ask(evaluation, curve_q, coordinates);
+  return ask(evaluation, curve_q, state);
 }
 
-Status SiteTable::update_jacobian(const double* curve_q, int coordinates) {
+Status SiteTable::update_jacobian(Span<const double> curve_q, std::uint64_t state) {
   if (!needs_jacobian()) return {};
   SiteEvaluation evaluation;
   evaluation.jacobian = jacobian;
-  return ask(evaluation, curve_q, coordinates);
+  return ask(evaluation, curve_q, state);
 }
 
-Status SiteTable::update_values_and_jacobian(const double* curve_q, int coordinates) {
+Status SiteTable::update_values_and_jacobian(Span<const double> curve_q, std::uint64_t state) {
   SiteEvaluation evaluation;
   evaluation.values = y;
   if (needs_jacobian()) evaluation.jacobian = jacobian;
-  return ask(evaluation, curve_q, coordinates);
+  return ask(evaluation, curve_q, state);
 }
 
-Status SiteTable::update_curvature(const double* curve_q, int coordinates) {
+Status SiteTable::update_curvature(Span<const double> curve_q, std::uint64_t state) {
   if (!bends()) return {};
   SiteEvaluation evaluation;
   evaluation.stress = total_stress;
   evaluation.curvature = curvature;
-  return ask(evaluation, curve_q, coordinates);
+  return ask(evaluation, curve_q, state);
 }
 
 void SiteTable::add_gradient(const std::vector<double>& place_stress, double* out) const noexcept {

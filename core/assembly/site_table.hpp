@@ -33,12 +33,12 @@ struct SiteTable {
   int hessian_first() const noexcept { return modulus.empty() ? declaration->bent_first : 0; }
   int hessian_width() const noexcept { return modulus.empty() ? declaration->bent() : declaration->width; }
 
-  // A number that is not finite is `failed`, and names the place.
-  Status update_values(const double* curve_q, int coordinates);
-  Status update_jacobian(const double* curve_q, int coordinates);
-  Status update_values_and_jacobian(const double* curve_q, int coordinates);
+  // `state`: of SiteEvaluation. A number that is not finite is `failed`, and names the place.
+  Status update_values(Span<const double> curve_q, std::uint64_t state);
+  Status update_jacobian(Span<const double> curve_q, std::uint64_t state);
+  Status update_values_and_jacobian(Span<const double> curve_q, std::uint64_t state);
   /// Σ total_stress ∂²y/∂δ² at every place.
-  Status update_curvature(const double* curve_q, int coordinates);
+  Status update_curvature(Span<const double> curve_q, std::uint64_t state);
 
   /// out += Σ_places Bᵀ stress, over scene-wide tangent numbers.
   void add_gradient(const std::vector<double>& place_stress, double* out) const noexcept;
@@ -47,7 +47,7 @@ struct SiteTable {
 
  private:
   bool needs_jacobian() const noexcept;
-  Status ask(SiteEvaluation evaluation, const double* curve_q, int coordinates);
+  Status ask(SiteEvaluation evaluation, Span<const double> curve_q, std::uint64_t state);
 
   bool has_jacobian_ = false;  // of a linear site, which has the same one at every state
 };

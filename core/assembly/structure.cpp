@@ -81,7 +81,7 @@ void Assembly::make_tables() {
   std::vector<std::vector<double>> reference_y;
   for (SiteTable& table : tables_) {
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = table.update_values(reference.data() + curve.coordinate_begin, curve.coordinates);
+    Status status = table.update_values({reference.data() + curve.coordinate_begin, at(curve.coordinates)}, 0);
     if (!status.ok()) throw std::runtime_error("curve '" + curve.name + "' at State 1: " + status.text);
     reference_y.push_back(table.y);
   }

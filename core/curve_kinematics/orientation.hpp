@@ -9,11 +9,10 @@
 
 namespace bowstring {
 
-/// ζ from one orientation to a later one, and its derivatives in the tangent numbers of both.
-template <int m>
-struct StationStrain {
-  Vector<m> value;
-  Matrix<m, m> by_earlier, by_later;
+/// ζ from one angle to a later one, like `lie::RelativeTurn` and `lie::RelativeRotation`.
+struct RelativeAngle {
+  Vector<1> value;
+  Matrix<1, 1> by_a{{-1.0}}, by_b{{1.0}};
 };
 
 /// The orientation of an edge or of a held tangent: one specialisation per manifold, with
@@ -58,68 +57,67 @@ using PlanarOrientation = Orientation<Manifold::circle>;
 using DirectionOrientation = Orientation<Manifold::direction>;
 using FrameOrientation = Orientation<Manifold::rotation>;
 
-inline StationStrain<1> station_strain(const PlanarOrientation& earlier, const PlanarOrientation& later) noexcept {
-  return {{{later.angle - earlier.angle}}, {{-1.0}}, {{1.0}}};
+/// ζ from orientation a to the later orientation b, with its derivatives in the tangent numbers of both.
+inline RelativeAngle station_strain(const PlanarOrientation& a, const PlanarOrientation& b) noexcept {
+  return {{{b.angle - a.angle}}};
 }
-inline StationStrain<2> station_strain(const DirectionOrientation& earlier,
-                                       const DirectionOrientation& later) noexcept {
-  const lie::RelativeTurn turn = lie::relative_turn(earlier.rotation, later.rotation);
-  return {turn.value, turn.by_a, turn.by_b};
+inline lie::RelativeTurn station_strain(const DirectionOrientation& a, const DirectionOrientation& b) noexcept {
+  return lie::relative_turn(a.rotation, b.rotation);
 }
-inline StationStrain<3> station_strain(const FrameOrientation& earlier, const FrameOrientation& later) noexcept {
-  const lie::RelativeRotation relative = lie::relative_rotation(earlier.rotation, later.rotation);
-  return {relative.value, relative.by_a, relative.by_b};
+inline lie::RelativeRotation station_strain(const FrameOrientation& a, const FrameOrientation& b) noexcept {
+  return lie::relative_rotation(a.rotation, b.rotation);
 }
+template <Manifold manifold>
+using StationStrain = decltype(station_strain(Orientation<manifold>(), Orientation<manifold>()));
 
-/// Σ_a stress_a ∂²ζ_a over the tangent numbers of (earlier, later).
-inline Matrix<2, 2> station_curvature(const PlanarOrientation&, const PlanarOrientation&, const Vector<1>&) noexcept {
-  return {};
+/// Σ_k stress_k ∂²ζ_k over the tangent numbers of (a, b).
+inline Matrix<2, 2> station_curvature(const RelativeAngle&, const Vector<1>&) noexcept { return {}; }
+inline Matrix<4, 4> station_curvature(const lie::RelativeTurn& strain, const Vector2& stress) noexcept {
+  return lie::relative_turn_curvature(strain, stress);
 }
-inline Matrix<4, 4> station_curvature(const DirectionOrientation& earlier, const DirectionOrientation& later,
-                                      const Vector2& stress) noexcept {
-  return lie::relative_turn_curvature(earlier.rotation, later.rotation, stress);
-}
-inline Matrix<6, 6> station_curvature(const FrameOrientation& earlier, const FrameOrientation& later,
-                                      const Vector3& stress) noexcept {
-  const Vector3 strain = lie::log(earlier.rotation.inverse() * later.rotation);
+inline Matrix<6, 6> station_curvature(const lie::RelativeRotation& strain, const Vector3& stress) noexcept {
   return lie::relative_rotation_curvature(strain, stress);
 }
 
+/// The orientation as a matrix R.
+inline Matrix2 axes(const PlanarOrientation& o) noexcept {
+  const double c = std::cos(o.angle), s = std::sin(o.angle);
+  return {{c, -s, s, c}};
+}
+inline Matrix3 axes(const DirectionOrientation& o) noexcept { return o.rotation.matrix(); }
+inline Matrix3 axes(const FrameOrientation& o) noexcept { return o.rotation.matrix(); }
+
 /// Unit tangent t = R e₁.
+template <int d>
+Vector<d> tangent(const Matrix<d, d>& axes) noexcept {
+  return axes.column(0);
+}
 inline Vector2 tangent(const PlanarOrientation& o) noexcept { return {{std::cos(o.angle), std::sin(o.angle)}}; }
 inline Vector3 tangent(const DirectionOrientation& o) noexcept { return o.rotation.first_axis(); }
 inline Vector3 tangent(const FrameOrientation& o) noexcept { return o.rotation.first_axis(); }
 
 /// ∂t/∂δ. In space R Exp(δ) e₁ = R (e₁ + δ × e₁ + ½ δ × (δ × e₁) + …), with δ × e₁ = (0, δ₃, −δ₂).
-inline Matrix<2, 1> tangent_gradient(const PlanarOrientation& o) noexcept {
-  return {{-std::sin(o.angle), std::cos(o.angle)}};
-}
-inline Matrix<3, 2> tangent_gradient(const DirectionOrientation& o) noexcept {
-  const Matrix3 r = o.rotation.matrix();
-  Matrix<3, 2> out;
-  out.set_column(0, -r.column(2));
-  out.set_column(1, r.column(1));
-  return out;
-}
-inline Matrix<3, 3> tangent_gradient(const FrameOrientation& o) noexcept {
-  const Matrix3 r = o.rotation.matrix();
-  Matrix3 out;
-  out.set_column(1, -r.column(2));
-  out.set_column(2, r.column(1));
+template <Manifold manifold>
+auto tangent_gradient(const Matrix<Orientation<manifold>::dimension, Orientation<manifold>::dimension>& axes) noexcept {
+  constexpr int m = Orientation<manifold>::components;
+  Matrix<Orientation<manifold>::dimension, m> out;
+  out.set_column(m - 1, axes.column(1));
+  if constexpr (m > 1) out.set_column(m - 2, -axes.column(2));
   return out;
 }
 
 /// w·∂²t/∂δ². In space, with g = Rᵀw, the second-order term above is g·½(δ₁δ − |δ|² e₁).
-inline Matrix<1, 1> tangent_curvature(const PlanarOrientation& o, const Vector2& w) noexcept {
-  return {{-dot(w, tangent(o))}};
-}
-inline Matrix2 tangent_curvature(const DirectionOrientation& o, const Vector3& w) noexcept {
-  return -dot(w, tangent(o)) * Matrix2::identity();
-}
-inline Matrix3 tangent_curvature(const FrameOrientation& o, const Vector3& w) noexcept {
-  const Vector3 g = o.rotation.inverse() * w;
-  const double half2 = 0.5 * g[1], half3 = 0.5 * g[2];
-  return {{0.0, half2, half3, half2, -g[0], 0.0, half3, 0.0, -g[0]}};
+template <Manifold manifold>
+auto tangent_curvature(const Matrix<Orientation<manifold>::dimension, Orientation<manifold>::dimension>& axes,
+                       const Vector<Orientation<manifold>::dimension>& w) noexcept {
+  constexpr int m = Orientation<manifold>::components;
+  const double along = -dot(w, axes.column(0));
+  Matrix<m, m> out;
+  for (int k = m == 3 ? 1 : 0; k < m; ++k) out(k, k) = along;
+  if constexpr (m == 3) {
+    for (int k = 1; k < m; ++k) out(0, k) = out(k, 0) = 0.5 * dot(w, axes.column(k));
+  }
+  return out;
 }
 
 }  // namespace bowstring

@@ -64,7 +64,8 @@ struct RowEvaluation {
   /// begin where they always do, those of these places then come first, packed, and the rest is not read.
   Span<RowSupport> support;
   /// The same number means that `at` holds the same places as in the last call that had it, and that nothing was
-  /// accepted or bound in between: what was found then may serve again. 0: unknown.
+  /// accepted or bound in between: what was found then may serve again. No two states of a process share one. 0:
+  /// unknown.
   std::uint64_t state = 0;
 };
 

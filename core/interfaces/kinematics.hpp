@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,9 @@ struct SiteEvaluation {
   Span<double> jacobian;      ///< count × values × width: B = ∂y/∂δ at δ = 0
   Span<const double> stress;  ///< count × values, read only for `curvature`
   Span<double> curvature;     ///< count × packed_size(bent()): Σ_a stress_a ∂²y_a/∂δ²
+  /// The same number means the same q as in the last call that had it, whatever the site, so that what was computed
+  /// then may serve again; no two states of a process share one. 0: unknown.
+  std::uint64_t state = 0;
 };
 
 /// Position and orientation of material points of the curve.

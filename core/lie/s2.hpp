@@ -53,7 +53,7 @@ inline TurnFactor turn_factor(const Vector3& u) noexcept {
   return {f, first, (f + 3.0 * c * first) / (sine * sine)};
 }
 
-/// u = aᵀ b e₁ as a function of (α₂, α₃, β₂, β₃), u = Exp(−(0, α)) Q Exp((0, β)) e₁, with its first and second
+/// u = Q e₁, Q = aᵀ b, as a function of (α₂, α₃, β₂, β₃), u = Exp(−(0, α)) Q Exp((0, β)) e₁, with its first and second
 /// derivatives at 0: ∂u/∂α_k = −e_k × u and ∂u/∂β_k = Q(e_k × e₁); twice in one argument the symmetrised double
 /// product, ∂²u/∂α_k∂α_l = ½(e_k u_l + e_l u_k) − δ_kl u and ∂²u/∂β_k∂β_l = −δ_kl u.
 struct TurnedAxis {
@@ -61,8 +61,7 @@ struct TurnedAxis {
   std::array<Vector3, 4> first;
   std::array<std::array<Vector3, 4>, 4> second;
 };
-inline TurnedAxis turned_axis(const Rotation& a, const Rotation& b) noexcept {
-  const Matrix3 q = (a.inverse() * b).matrix();
+inline TurnedAxis turned_axis(const Matrix3& q) noexcept {
   const std::array<Vector3, 2> e{Vector3::unit(1), Vector3::unit(2)};
   TurnedAxis t;
   t.u = q.column(0);
@@ -85,15 +84,18 @@ inline TurnedAxis turned_axis(const Rotation& a, const Rotation& b) noexcept {
 struct RelativeTurn {
   Vector2 value;
   Matrix2 by_a, by_b;
+  Matrix3 between;            ///< aᵀ b
+  detail::TurnFactor factor;  ///< of its first column
 };
 /// ζ = f(u₁)(−u₃, u₂), differentiated as this function of R³ along the derivatives of u, which stay on the sphere.
 inline RelativeTurn relative_turn(const Rotation& a, const Rotation& b) noexcept {
-  const detail::TurnedAxis t = detail::turned_axis(a, b);
-  const detail::TurnFactor f = detail::turn_factor(t.u);
+  RelativeTurn out;
+  out.between = (a.inverse() * b).matrix();
+  const detail::TurnedAxis t = detail::turned_axis(out.between);
+  const detail::TurnFactor f = out.factor = detail::turn_factor(t.u);
   const auto derivative = [&](const Vector3& du) {
     return f.value * Vector2{{-du[2], du[1]}} + f.first * du[0] * Vector2{{-t.u[2], t.u[1]}};
   };
-  RelativeTurn out;
   out.value = direction_log(t.u);
   for (int k = 0; k < 2; ++k) {
     out.by_a.set_column(k, derivative(t.first[static_cast<std::size_t>(k)]));
@@ -106,18 +108,20 @@ inline RelativeTurn relative_turn(const Rotation& a, const Rotation& b) noexcept
 ///
 /// With w(u) = m·(−u₃, u₂), linear in u, m·ζ = f(u₁)w(u), and along p and q
 ///   ∂²(m·ζ) = f'' ∂_p u₁ ∂_q u₁ w(u) + f' (∂_p u₁ w(∂_q u) + ∂_q u₁ w(∂_p u)) + f' ∂²u₁ w(u) + f w(∂²u).
-inline Matrix<4, 4> relative_turn_curvature(const Rotation& a, const Rotation& b, const Vector2& m) noexcept {
-  const detail::TurnedAxis t = detail::turned_axis(a, b);
-  const detail::TurnFactor f = detail::turn_factor(t.u);
+inline Matrix<4, 4> relative_turn_curvature(const RelativeTurn& turn, const Vector2& m) noexcept {
+  const detail::TurnedAxis t = detail::turned_axis(turn.between);
+  const detail::TurnFactor& f = turn.factor;
   const auto w = [&m](const Vector3& u) { return m[1] * u[1] - m[0] * u[2]; };
+  const double w_u = w(t.u);
+  double du[4], w_du[4];
+  for (std::size_t p = 0; p < 4; ++p) du[p] = t.first[p][0], w_du[p] = w(t.first[p]);
   Matrix<4, 4> out;
-  for (int p = 0; p < 4; ++p) {
-    for (int q = 0; q < 4; ++q) {
-      const Vector3& du_p = t.first[static_cast<std::size_t>(p)];
-      const Vector3& du_q = t.first[static_cast<std::size_t>(q)];
-      const Vector3& second = t.second[static_cast<std::size_t>(p)][static_cast<std::size_t>(q)];
-      out(p, q) = (f.second * du_p[0] * du_q[0] + f.first * second[0]) * w(t.u) +
-                  f.first * (du_p[0] * w(du_q) + du_q[0] * w(du_p)) + f.value * w(second);
+  for (std::size_t p = 0; p < 4; ++p) {
+    for (std::size_t q = 0; q <= p; ++q) {
+      const Vector3& second = t.second[p][q];
+      const double entry = (f.second * du[p] * du[q] + f.first * second[0]) * w_u +
+                           f.first * (du[p] * w_du[q] + du[q] * w_du[p]) + f.value * w(second);
+      out(static_cast<int>(p), static_cast<int>(q)) = out(static_cast<int>(q), static_cast<int>(p)) = entry;
     }
   }
   return out;

@@ -220,10 +220,16 @@ inline Matrix3 right_jacobian(const Vector3& v) noexcept {
 /// J_l: d Exp(v) Exp(v)⁻¹ = (J_l(v) dv)^. J_l(v) = J_r(−v) = J_r(v)ᵀ.
 inline Matrix3 left_jacobian(const Vector3& v) noexcept { return right_jacobian(-v); }
 
-/// |v| < 2π
+/// |v| < 2π. `k`: the coefficients at |v|².
+inline Matrix3 right_jacobian_inverse(const Vector3& v, const InverseJacobianCoefficients& k) noexcept {
+  // v^² = v vᵀ − |v|² I
+  Matrix3 out = k.c * outer(v, v);
+  const double diagonal = 1.0 - k.c * norm_squared(v);
+  for (int i = 0; i < 3; ++i) out(i, i) += diagonal;
+  return out + 0.5 * hat(v);
+}
 inline Matrix3 right_jacobian_inverse(const Vector3& v) noexcept {
-  const Matrix3 h = hat(v);
-  return Matrix3::identity() + 0.5 * h + inverse_jacobian_coefficients(norm_squared(v)).c * (h * h);
+  return right_jacobian_inverse(v, inverse_jacobian_coefficients(norm_squared(v)));
 }
 /// |v| < 2π
 inline Matrix3 left_jacobian_inverse(const Vector3& v) noexcept { return right_jacobian_inverse(-v); }
@@ -232,14 +238,19 @@ inline Matrix3 left_jacobian_inverse(const Vector3& v) noexcept { return right_j
 struct RelativeRotation {
   Vector3 value;
   Matrix3 by_a, by_b;
+  InverseJacobianCoefficients coefficients;  ///< of J_r⁻¹(ζ)
 };
 /// ∂ζ/∂b = J_r⁻¹(ζ); ∂ζ/∂a = −J_l⁻¹(ζ), because a Exp(δ) turns aᵀb into Exp(−δ) aᵀb.
-inline RelativeRotation relative_rotation(const Rotation& a, const Rotation& b) noexcept {
+inline RelativeRotation relative_rotation(const Vector3& zeta) noexcept {
   RelativeRotation out;
-  out.value = log(a.inverse() * b);
-  out.by_b = right_jacobian_inverse(out.value);
+  out.value = zeta;
+  out.coefficients = inverse_jacobian_coefficients(norm_squared(zeta));
+  out.by_b = right_jacobian_inverse(zeta, out.coefficients);
   out.by_a = -out.by_b.transpose();
   return out;
+}
+inline RelativeRotation relative_rotation(const Rotation& a, const Rotation& b) noexcept {
+  return relative_rotation(log(a.inverse() * b));
 }
 
 namespace detail {
@@ -248,8 +259,8 @@ namespace detail {
 /// J_r⁻¹(ζ)δ = δ + ½ ζ×δ + c ζ×(ζ×δ) and dc along η being (c'/θ)(ζ·η),
 ///   ηᵀKδ = ½ m·(η×δ) + (c'/θ)(ζ·η) m·(ζ×(ζ×δ)) + c m·(η×(ζ×δ) + ζ×(η×δ)),
 /// and with a×(b×c) = b(a·c) − c(a·b) in the last two terms.
-inline Matrix3 inverse_jacobian_gradient(const Vector3& zeta, const Vector3& m) noexcept {
-  const InverseJacobianCoefficients k = inverse_jacobian_coefficients(norm_squared(zeta));
+inline Matrix3 inverse_jacobian_gradient(const Vector3& zeta, const InverseJacobianCoefficients& k,
+                                         const Vector3& m) noexcept {
   const Vector3 doubly_crossed = cross(zeta, cross(zeta, m));
   return -0.5 * hat(m) + k.c_rate * outer(zeta, doubly_crossed) +
          k.c * (dot(m, zeta) * Matrix3::identity() + outer(m, zeta) - 2.0 * outer(zeta, m));
@@ -264,9 +275,9 @@ inline Matrix3 inverse_jacobian_gradient(const Vector3& zeta, const Vector3& m) 
 /// dζ/dτ = −J_l⁻¹(ζ)δ, hence d²ζ/dτ² = DJ_l⁻¹(ζ)[J_l⁻¹(ζ)δ] δ, where DJ_l⁻¹ is DJ_r⁻¹ with the other sign of its
 /// term ½ η×δ. A quadratic form leaves the symmetric part of both. The derivative of J_r⁻¹(ζ)δb along δa is the mixed
 /// one, DJ_r⁻¹(ζ)[−J_l⁻¹(ζ)δa] δb.
-inline Matrix<6, 6> relative_rotation_curvature(const Vector3& zeta, const Vector3& m) noexcept {
-  const Matrix3 right = right_jacobian_inverse(zeta);
-  const Matrix3 gradient = detail::inverse_jacobian_gradient(zeta, m);
+inline Matrix<6, 6> relative_rotation_curvature(const RelativeRotation& zeta, const Vector3& m) noexcept {
+  const Matrix3& right = zeta.by_b;
+  const Matrix3 gradient = detail::inverse_jacobian_gradient(zeta.value, zeta.coefficients, m);
   const Matrix3 ab = -(right * gradient);
   Matrix<6, 6> out;
   out.set_block(0, 0, symmetric_part(right * (gradient + hat(m))));

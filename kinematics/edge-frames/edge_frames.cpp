@@ -20,6 +20,16 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double smallest_stretch = 0.2;  // an edge below it counts as folded
 
+/// The strains of the manifold in question.
+template <Manifold manifold, class Turns, class Rotations>
+auto& found(Turns& turns, Rotations& rotations) noexcept {
+  if constexpr (manifold == Manifold::direction) {
+    return turns;
+  } else {
+    return rotations;
+  }
+}
+
 }  // namespace
 
 Status EdgeFrames::declare(const CurveView& curve, const Needs& needs, KinematicsDeclaration& out) noexcept {
@@ -34,6 +44,10 @@ Status EdgeFrames::declare(const CurveView& curve, const Needs& needs, Kinematic
     }
     declare_fields(needs, out);
     declare_sites(out);
+    strain_state_ = axes_state_ = 0;
+    if (manifold_ == Manifold::circle) axes_.resize(closed_edges_.size());
+    if (manifold_ == Manifold::direction) turns_.resize(mesh_.stations.size());
+    if (manifold_ == Manifold::rotation) rotations_.resize(mesh_.stations.size());
     out.closure_name = "edge closure";
     return {};
   });
@@ -177,25 +191,25 @@ Status EdgeFrames::evaluate(const SiteEvaluation& evaluation) const noexcept {
     case Site::station:
       switch (manifold_) {
         case Manifold::circle:
-          evaluate_stations<PlanarOrientation>(evaluation);
+          evaluate_stations<Manifold::circle>(evaluation);
           return {};
         case Manifold::direction:
-          evaluate_stations<DirectionOrientation>(evaluation);
+          evaluate_stations<Manifold::direction>(evaluation);
           return {};
         default:
-          evaluate_stations<FrameOrientation>(evaluation);
+          evaluate_stations<Manifold::rotation>(evaluation);
           return {};
       }
     case Site::closure:
       switch (manifold_) {
         case Manifold::circle:
-          evaluate_closure<PlanarOrientation>(evaluation);
+          evaluate_closure<Manifold::circle>(evaluation);
           return {};
         case Manifold::direction:
-          evaluate_closure<DirectionOrientation>(evaluation);
+          evaluate_closure<Manifold::direction>(evaluation);
           return {};
         default:
-          evaluate_closure<FrameOrientation>(evaluation);
+          evaluate_closure<Manifold::rotation>(evaluation);
           return {};
       }
     case Site::field:
@@ -204,27 +218,38 @@ Status EdgeFrames::evaluate(const SiteEvaluation& evaluation) const noexcept {
   return Status::failure(Code::unsupported, "edge-frames has no such site");
 }
 
-template <class EdgeOrientation>
+template <Manifold manifold>
 void EdgeFrames::evaluate_stations(const SiteEvaluation& evaluation) const noexcept {
+  using EdgeOrientation = Orientation<manifold>;
   constexpr int m = EdgeOrientation::components;
   const double* q = evaluation.q.data();
   const StationOutput<m, 2 * m> out(mesh_, length_.exists() ? q[length_.coordinate] : 0.0, evaluation);
+  const bool known = evaluation.state != 0 && evaluation.state == strain_state_;
   for (int k = 0; k < static_cast<int>(mesh_.stations.size()); ++k) {
     const Station& station = mesh_.stations[at(k)];
-    const auto earlier = EdgeOrientation::load(q + orientation_coordinate(station.earlier));
-    const auto later = EdgeOrientation::load(q + orientation_coordinate(station.later));
-    if (out.wants_values() || out.wants_jacobian()) {
-      const StationStrain<m> strain = station_strain(earlier, later);
+    const auto compute = [&] {
+      return station_strain(EdgeOrientation::load(q + orientation_coordinate(station.earlier)),
+                            EdgeOrientation::load(q + orientation_coordinate(station.later)));
+    };
+    const auto write = [&](const StationStrain<manifold>& strain) {
       if (out.wants_values()) out.write_values(k, station, strain.value);
       if (out.wants_jacobian()) {
         Matrix<m, 2 * m> b;
-        b.set_block(0, 0, strain.by_earlier);
-        b.set_block(0, m, strain.by_later);
+        b.set_block(0, 0, strain.by_a);
+        b.set_block(0, m, strain.by_b);
         out.write_jacobian(k, station, b);
       }
+      if (out.wants_curvature()) out.write_curvature(k, station_curvature(strain, out.stress(k)));
+    };
+    if constexpr (manifold == Manifold::circle) {
+      write(compute());
+    } else {
+      auto& strains = found<manifold>(turns_, rotations_);
+      if (!known) strains[at(k)] = compute();
+      write(strains[at(k)]);
     }
-    if (out.wants_curvature()) out.write_curvature(k, station_curvature(earlier, later, out.stress(k)));
   }
+  strain_state_ = evaluation.state;
 }
 
 void EdgeFrames::evaluate_frames(const SiteEvaluation& out) const noexcept {
@@ -251,25 +276,34 @@ void EdgeFrames::evaluate_edges(const SiteEvaluation& out) const noexcept {
 
 /// Rows r = p_{i+1} − p_i − ℓ t, with t = R_i e₁ and ℓ = constant + slope u, u the unknown length:
 ///   ∂r = (−I, I, −ℓ ∂t/∂δ, −slope t),  w·∂²r/∂δ² = −ℓ w·∂²t/∂δ²,  w·∂²r/∂δ∂u = −slope w·∂t/∂δ.
-template <class EdgeOrientation>
+template <Manifold manifold>
 void EdgeFrames::evaluate_closure(const SiteEvaluation& out) const noexcept {
+  using EdgeOrientation = Orientation<manifold>;
   constexpr int d = EdgeOrientation::dimension, m = EdgeOrientation::components, fixed_columns = 2 * d + m;
   const bool varying = mesh_.sliding() || mesh_.stretching();
   const int width = fixed_columns + (varying ? 1 : 0);
   const double* q = out.q.data();
+  const bool known = out.state != 0 && out.state == axes_state_;
   for (int k = 0; k < static_cast<int>(closed_edges_.size()); ++k) {
     const int edge = closed_edges_[at(k)];
-    const auto orientation = EdgeOrientation::load(q + orientation_.coordinate_of(edge));
+    const auto compute = [&] { return axes(EdgeOrientation::load(q + orientation_.coordinate_of(edge))); };
+    Matrix<d, d> r;
+    if constexpr (manifold == Manifold::circle) {
+      if (!known) axes_[at(k)] = compute();
+      r = axes_[at(k)];
+    } else {
+      r = compute();
+    }
     const LinearInLength length = closure_length(edge);
     const double unknown =
         mesh_.stretching() ? q[edge_length_.coordinate_of(edge)] : (mesh_.sliding() ? q[length_.coordinate] : 0.0);
-    const Vector<d> t = tangent(orientation);
+    const Vector<d> t = tangent(r);
     if (!out.values.empty()) {
       const double* p = q + position_.coordinate_of(edge);
       for (int a = 0; a < d; ++a) out.values[at(k * d + a)] = p[d + a] - p[a] - length.at(unknown) * t[a];
     }
     if (out.jacobian.empty() && out.curvature.empty()) continue;
-    const Matrix<d, m> gradient = tangent_gradient(orientation);
+    const Matrix<d, m> gradient = tangent_gradient<manifold>(r);
     if (!out.jacobian.empty()) {
       double* b = out.jacobian.data() + k * d * width;
       std::fill(b, b + d * width, 0.0);
@@ -282,7 +316,7 @@ void EdgeFrames::evaluate_closure(const SiteEvaluation& out) const noexcept {
     }
     if (!out.curvature.empty()) {
       const Vector<d> weight = Vector<d>::load(out.stress.data() + k * d);
-      const Matrix<m, m> bend = tangent_curvature(orientation, weight);
+      const Matrix<m, m> bend = tangent_curvature<manifold>(r, weight);
       double* h = out.curvature.data() + k * packed_size(width - 2 * d);
       for (int i = 0; i < m; ++i) {
         for (int j = 0; j <= i; ++j) h[packed_index(i, j)] = -length.at(unknown) * bend(i, j);
@@ -291,6 +325,7 @@ void EdgeFrames::evaluate_closure(const SiteEvaluation& out) const noexcept {
       if (varying) h[packed_index(m, m)] = 0.0;
     }
   }
+  axes_state_ = out.state;
 }
 
 LinearInLength EdgeFrames::closure_length(int edge) const noexcept {

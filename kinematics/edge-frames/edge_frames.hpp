@@ -4,6 +4,7 @@
 
 #include "core/curve_kinematics/curve_mesh.hpp"
 #include "core/curve_kinematics/fields.hpp"
+#include "core/curve_kinematics/orientation.hpp"
 #include "core/interfaces/kinematics.hpp"
 #include "core/interfaces/parameter.hpp"
 
@@ -39,9 +40,9 @@ class EdgeFrames final : public Kinematics {
   int length_unknown(int edge) const noexcept;
   LinearInLength closure_length(int edge) const noexcept;
 
-  template <class EdgeOrientation>
+  template <Manifold manifold>
   void evaluate_stations(const SiteEvaluation& out) const noexcept;
-  template <class EdgeOrientation>
+  template <Manifold manifold>
   void evaluate_closure(const SiteEvaluation& out) const noexcept;
   void evaluate_frames(const SiteEvaluation& out) const noexcept;
   void evaluate_edges(const SiteEvaluation& out) const noexcept;
@@ -51,6 +52,13 @@ class EdgeFrames final : public Kinematics {
   FieldSlot position_, orientation_, edge_length_, length_, held_tangent_;
   std::vector<int> closed_edges_;    // those with closure rows
   std::vector<double> first_frame_;  // coordinates of the first edge's orientation in State 1
+
+  // What was computed at a state and serves all of its evaluations: strains of the stations, and in the plane, where
+  // they are not had without sine and cosine, axes of the closed edges.
+  mutable std::uint64_t strain_state_ = 0, axes_state_ = 0;
+  mutable std::vector<StationStrain<Manifold::direction>> turns_;
+  mutable std::vector<StationStrain<Manifold::rotation>> rotations_;
+  mutable std::vector<Matrix2> axes_;
 };
 
 }  // namespace bowstring

@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include "core/curve_kinematics/orientation.hpp"
 #include "core/curve_kinematics/sample.hpp"
 #include "core/curve_kinematics/sites.hpp"
 #include "core/curve_kinematics/station_output.hpp"
@@ -17,99 +16,6 @@ namespace bowstring {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// What a station reads of an edge or of a held tangent. An edge has `edge_numbers` unknowns of its own: its vector e,
-/// as the difference of its nodes, and with material frames its angle.
-template <Manifold manifold>
-struct Side {
-  static constexpr int d = Orientation<manifold>::dimension, m = Orientation<manifold>::components;
-  static constexpr int angles = manifold == Manifold::rotation ? 1 : 0;
-  static constexpr int edge_numbers = d + angles;
-
-  Vector<d> tangent;
-  lie::Rotation frame;           ///< in space: first axis along the tangent
-  double length = 0.0;           ///< of an edge; 0 for a held tangent
-  Matrix<m, edge_numbers> turn;  ///< ∂α/∂(e, φ): α the tangent numbers of the edge's orientation
-  Vector<d> twist_rate;          ///< with material frames ∇D/D, D = ℓ² (1 + t·a) (README.md)
-
-  bool is_edge() const noexcept { return length > 0.0; }
-};
-using PlanarSide = Side<Manifold::circle>;
-using DirectionSide = Side<Manifold::direction>;
-using FrameSide = Side<Manifold::rotation>;
-
-/// The reference frame of an edge, which its tangent and its angle turn.
-struct EdgeReference {
-  const lie::Rotation* frame = nullptr;
-  double angle = 0.0;
-};
-
-/// Rows of ∂α/∂e across the edge: N/ℓ, the rows of N orthonormal to the tangent.
-Matrix<2, 3> across(const lie::Rotation& frame, double length) noexcept {
-  const Matrix3 r = frame.matrix();
-  return Matrix<2, 3>{{-r(0, 2), -r(1, 2), -r(2, 2), r(0, 1), r(1, 1), r(2, 1)}} / length;
-}
-
-void set_orientation(const EdgeReference&, PlanarSide& side) noexcept {
-  side.turn = Matrix<1, 2>{{-side.tangent[1], side.tangent[0]}} / side.length;
-}
-void set_orientation(const EdgeReference&, DirectionSide& side) noexcept {
-  side.frame = lie::frame_from_tangent(side.tangent);
-  side.turn = across(side.frame, side.length);
-}
-/// The frame of State 1 after the least turn from its tangent a to the edge's t, then turned by the angle about t.
-void set_orientation(const EdgeReference& reference, FrameSide& side) noexcept {
-  const double half = 0.5 * reference.angle;
-  side.frame = lie::transport(*reference.frame, side.tangent) * lie::Rotation{std::cos(half), std::sin(half), 0.0, 0.0};
-  const Vector3 a = reference.frame->first_axis();
-  const double cosine = dot(a, side.tangent);
-  const double scale = side.length * (1.0 + cosine);
-  const Vector3 twist = cross(side.tangent, a) / scale;
-  side.twist_rate = ((2.0 + cosine) * side.tangent + a) / scale;
-  for (int k = 0; k < 3; ++k) side.turn(0, k) = twist[k];
-  side.turn(0, 3) = 1.0;
-  side.turn.set_block(1, 0, across(side.frame, side.length));
-}
-
-/// Whether the least turn from State 1 exists.
-bool has_frame(const EdgeReference&, const PlanarSide&) noexcept { return true; }
-bool has_frame(const EdgeReference&, const DirectionSide&) noexcept { return true; }
-bool has_frame(const EdgeReference& reference, const FrameSide& side) noexcept {
-  constexpr double opposite = 1e-8;  // 1 + cos of a turn of π − 1.4e-4
-  return 1.0 + dot(reference.frame->first_axis(), side.tangent) > opposite;
-}
-
-/// The edge from the node at `p` to the next one. Its length is not positive where it has no direction.
-template <Manifold manifold>
-Side<manifold> edge_side(const double* p, const EdgeReference& reference) noexcept {
-  constexpr int d = Side<manifold>::d;
-  Side<manifold> side;
-  const Vector<d> edge = Vector<d>::load(p + d) - Vector<d>::load(p);
-  side.length = norm(edge);
-  side.tangent = edge / side.length;
-  set_orientation(reference, side);
-  return side;
-}
-
-void load_held(const double* q, PlanarSide& side) noexcept { side.tangent = tangent(PlanarOrientation::load(q)); }
-template <Manifold manifold>
-void load_held(const double* q, Side<manifold>& side) noexcept {
-  side.frame = lie::Rotation::load(q);
-  side.tangent = side.frame.first_axis();
-}
-
-template <Manifold manifold>
-Orientation<manifold> orientation(const Side<manifold>& side) noexcept {
-  return {side.frame};
-}
-StationStrain<1> strain_between(const PlanarSide& earlier, const PlanarSide& later) noexcept {
-  const double turn = std::atan2(cross(earlier.tangent, later.tangent), dot(earlier.tangent, later.tangent));
-  return {{{turn}}, {{-1.0}}, {{1.0}}};
-}
-template <Manifold manifold>
-auto strain_between(const Side<manifold>& earlier, const Side<manifold>& later) noexcept {
-  return station_strain(orientation(earlier), orientation(later));
-}
 
 /// Where the unknowns of one side begin within a station's stencil: of a held tangent all at `first`, of an edge its
 /// two nodes there and its angle at `angle`.
@@ -126,9 +32,6 @@ constexpr StationColumns station_columns(const Station& station, int edges, int 
   if (station.later >= edges) return {{0, 2 * d}, {2 * d + angles, 0}};
   return {{0, 3 * d}, {d, 3 * d + 1}};
 }
-template <Manifold manifold>
-constexpr int station_width = 3 * Side<manifold>::d + 2 * Side<manifold>::angles;
-
 /// ∂α/∂δ over a station's stencil: rows of one side.
 template <Manifold manifold, int rows, int columns>
 void set_side(const Side<manifold>& side, int row, SideColumns at, Matrix<rows, columns>& out) noexcept {
@@ -146,31 +49,7 @@ void set_side(const Side<manifold>& side, int row, SideColumns at, Matrix<rows, 
   }
 }
 
-/// g·∂²α over an edge's own (e, φ). Across the edge it is −(t vᵀ + v tᵀ)/ℓ over e, with v = gᵀ∂α/∂e of the rows across.
-template <Manifold manifold>
-auto edge_turn_curvature(const Side<manifold>& side, const Vector<Side<manifold>::m>& g) noexcept {
-  constexpr int d = Side<manifold>::d, m = Side<manifold>::m, n = Side<manifold>::edge_numbers;
-  constexpr int twist = m - (d - 1);  // rows before those across the edge
-  Vector<n> v, t;
-  for (int k = 0; k < d; ++k) {
-    t[k] = side.tangent[k];
-    for (int i = twist; i < m; ++i) v[k] += g[i] * side.turn(i, k);
-  }
-  Matrix<n, n> out = (outer(t, v) + outer(v, t)) * (-1.0 / side.length);
-  if constexpr (twist != 0) {
-    // With ω the rows of ∂α: g₁ ω₁' + ω₁ (g₂ ω₃ − g₃ ω₂), ω₁' = −(ω₁ − φ')(∇D/D) (README.md).
-    Vector<n> w1, along, rate, s;
-    for (int k = 0; k < n; ++k) {
-      w1[k] = side.turn(0, k);
-      s[k] = g[1] * side.turn(2, k) - g[2] * side.turn(1, k);
-      if (k < d) along[k] = w1[k], rate[k] = side.twist_rate[k];
-    }
-    out += symmetric_part(outer(w1, s)) - g[0] * symmetric_part(outer(along, rate));
-  }
-  return out;
-}
-
-/// Adds it over a station's stencil, where e is the difference of two nodes.
+/// Adds g·∂²α of a side over a station's stencil, where e is the difference of two nodes.
 template <Manifold manifold, int columns>
 void add_turn_curvature(const Side<manifold>& side, const Vector<Side<manifold>::m>& g, SideColumns at,
                         Matrix<columns, columns>& out) noexcept {
@@ -196,6 +75,72 @@ void add_turn_curvature(const Side<manifold>& side, const Vector<Side<manifold>:
   }
 }
 
+/// B of a station between two edges: ∂ζ/∂α ∂α/∂(e, φ) of both, at the nodes.
+template <Manifold manifold>
+auto station_jacobian(const Side<manifold>& a, const Side<manifold>& b,
+                      const StationStrain<manifold>& strain) noexcept {
+  constexpr int m = Side<manifold>::m, width = station_width<manifold>;
+  const auto by_a = strain.by_a * a.turn, by_b = strain.by_b * b.turn;
+  Matrix<m, width> out;
+  for (int i = 0; i < m; ++i) {
+    const Vector<width> row = at_nodes<manifold>(by_a.row(i), by_b.row(i));
+    for (int j = 0; j < width; ++j) out(i, j) = row[j];
+  }
+  return out;
+}
+
+/// stress·∂²ζ of a station between two edges, lower triangle: first in the edges' own unknowns, where matrices are
+/// small.
+template <Manifold manifold>
+auto station_bend(const Side<manifold>& a, const Side<manifold>& b, const StationStrain<manifold>& strain,
+                  const Vector<Side<manifold>::m>& stress) noexcept {
+  constexpr int m = Side<manifold>::m, n = Side<manifold>::edge_numbers;
+  Matrix<n, n> aa = edge_turn_curvature(a, strain.by_a.transpose() * stress);
+  Matrix<n, n> bb = edge_turn_curvature(b, strain.by_b.transpose() * stress);
+  Matrix<n, n> ba;
+  if constexpr (manifold != Manifold::circle) {
+    const Matrix<2 * m, 2 * m> h = station_curvature(strain, stress);
+    const Matrix<n, m> a_turn = a.turn.transpose(), b_turn = b.turn.transpose();
+    aa += a_turn * (h.template block<m, m>(0, 0) * a.turn);
+    ba = b_turn * (h.template block<m, m>(m, 0) * a.turn);
+    bb += b_turn * (h.template block<m, m>(m, m) * b.turn);
+  }
+  return at_nodes<manifold>(aa, ba, bb);
+}
+
+/// ∂(α, β)/∂δ of a station with a held tangent on one side.
+template <Manifold manifold>
+auto half_station_turns(const Side<manifold>& a, const Side<manifold>& b, const StationColumns& columns) noexcept {
+  Matrix<2 * Side<manifold>::m, station_width<manifold>> out;
+  set_side(a, 0, columns.earlier, out);
+  set_side(b, Side<manifold>::m, columns.later, out);
+  return out;
+}
+
+template <Manifold manifold>
+auto half_station_jacobian(const Side<manifold>& a, const Side<manifold>& b, const StationStrain<manifold>& strain,
+                           const StationColumns& columns) noexcept {
+  constexpr int m = Side<manifold>::m;
+  Matrix<m, 2 * m> by_turns;
+  by_turns.set_block(0, 0, strain.by_a);
+  by_turns.set_block(0, m, strain.by_b);
+  return by_turns * half_station_turns(a, b, columns);
+}
+
+template <Manifold manifold>
+auto half_station_curvature(const Side<manifold>& a, const Side<manifold>& b, const StationStrain<manifold>& strain,
+                            const StationColumns& columns, const Vector<Side<manifold>::m>& stress) noexcept {
+  constexpr int width = station_width<manifold>;
+  Matrix<width, width> out;
+  if constexpr (manifold != Manifold::circle) {
+    const auto turns = half_station_turns(a, b, columns);
+    out = turns.transpose() * (station_curvature(strain, stress) * turns);
+  }
+  add_turn_curvature(a, strain.by_a.transpose() * stress, columns.earlier, out);
+  add_turn_curvature(b, strain.by_b.transpose() * stress, columns.later, out);
+  return out;
+}
+
 }  // namespace
 
 Status Nodes::declare(const CurveView& curve, const Needs& needs, KinematicsDeclaration& out) noexcept {
@@ -210,6 +155,7 @@ Status Nodes::declare(const CurveView& curve, const Needs& needs, KinematicsDecl
     }
     declare_fields(needs, out);
     declare_sites(out);
+    make_room();
     out.closure_name = "uniform spacing";
     return check_winding(out);
   });
@@ -235,6 +181,19 @@ Status Nodes::check_winding(const KinematicsDeclaration& declared) const {
                                                 "' does not wind as often as its held ends are turned, and node "
                                                 "positions alone could not make up for it: use kinematics = "
                                                 "\"edge-frames\"");
+}
+
+void Nodes::make_room() {
+  measure_state_ = side_state_ = 0;
+  measures_.resize(at(mesh_.edges() * (mesh_.dimension() + 1)));
+  const auto sides = at(mesh_.edges() + mesh_.held_tangents);
+  const auto resize = [&](auto& found) {
+    found.sides.resize(sides);
+    found.strains.resize(mesh_.stations.size());
+  };
+  if (manifold_ == Manifold::circle) resize(std::get<Found<Manifold::circle>>(found_));
+  if (manifold_ == Manifold::direction) resize(std::get<Found<Manifold::direction>>(found_));
+  if (manifold_ == Manifold::rotation) resize(std::get<Found<Manifold::rotation>>(found_));
 }
 
 /// A row between two nodes that are wholly held would only freeze L, unless L has nothing else to follow.
@@ -350,56 +309,89 @@ Status Nodes::evaluate(const SiteEvaluation& evaluation) const noexcept {
   return Status::failure(Code::unsupported, "nodes has no such site");
 }
 
+template <int d>
+Status Nodes::find_measures(const SiteEvaluation& evaluation) const noexcept {
+  if (evaluation.state != 0 && evaluation.state == measure_state_) return {};
+  measure_state_ = 0;
+  const double* p = evaluation.q.data() + position_.coordinate;
+  double* out = measures_.data();
+  for (int edge = 0; edge < mesh_.edges(); ++edge, p += d, out += d + 1) {
+    const Vector<d> vector = Vector<d>::load(p + d) - Vector<d>::load(p);
+    const double length = norm(vector);
+    if (!(length > 0.0)) return no_orientation(edge, evaluation.q.data());
+    (vector * (1.0 / length)).store(out);
+    out[d] = length;
+  }
+  measure_state_ = evaluation.state;
+  return {};
+}
+
+template <int d>
+EdgeMeasure<d> Nodes::measure(int edge) const noexcept {
+  const double* found = measures_.data() + edge * (d + 1);
+  return {Vector<d>::load(found), found[d]};
+}
+
+template <Manifold manifold>
+Status Nodes::find_sides(const SiteEvaluation& evaluation) const noexcept {
+  if (evaluation.state != 0 && evaluation.state == side_state_) return {};
+  constexpr int d = Side<manifold>::d;
+  side_state_ = 0;
+  if (Status status = find_measures<d>(evaluation); !status.ok()) return status;
+  const double* q = evaluation.q.data();
+  auto& found = std::get<Found<manifold>>(found_);
+  for (int edge = 0; edge < mesh_.edges(); ++edge) {
+    Side<manifold>& side = found.sides[at(edge)];
+    const EdgeMeasure<d> measured = measure<d>(edge);
+    side.tangent = measured.tangent;
+    side.length = measured.length;
+    EdgeReference reference;
+    if (Side<manifold>::angles != 0) reference = {&reference_frames_[at(edge)], q[angle_.coordinate_of(edge)]};
+    set_orientation(reference, side);
+    if (!has_frame(reference, side)) return no_orientation(edge, q);
+  }
+  for (int k = 0; k < mesh_.held_tangents; ++k) {
+    load_held(q + held_tangent_.coordinate_of(k), found.sides[at(mesh_.edges() + k)]);
+  }
+  for (std::size_t k = 0; k < mesh_.stations.size(); ++k) {
+    const Station& station = mesh_.stations[k];
+    found.strains[k] = strain_between(found.sides[at(station.earlier)], found.sides[at(station.later)]);
+  }
+  side_state_ = evaluation.state;
+  return {};
+}
+
 /// ζ(α, β) of the two sides' orientations, with α(δ), β(δ) of their unknowns: B = ∂ζ/∂(α,β) A with A = ∂(α,β)/∂δ, and
 /// Σ stress ∂²ζ/∂δ² = Aᵀ (Σ stress ∂²ζ/∂(α,β)²) A + Σ (stressᵀ∂ζ/∂(α,β)) ∂²(α,β)/∂δ².
 template <Manifold manifold>
 Status Nodes::evaluate_stations(const SiteEvaluation& evaluation) const noexcept {
   using EdgeSide = Side<manifold>;
-  constexpr int d = EdgeSide::d, m = EdgeSide::m, width = station_width<manifold>;
+  constexpr int m = EdgeSide::m, width = station_width<manifold>;
+  if (Status status = find_sides<manifold>(evaluation); !status.ok()) return status;
   const double* q = evaluation.q.data();
   const StationOutput<m, width> out(mesh_, length_.exists() ? q[length_.coordinate] : 0.0, evaluation);
-  const auto load = [&](int index, EdgeSide& side) {
-    if (index < mesh_.edges()) {
-      EdgeReference reference;
-      if (EdgeSide::angles != 0) reference = {&reference_frames_[at(index)], q[angle_.coordinate_of(index)]};
-      side = edge_side<manifold>(q + position_.coordinate_of(index), reference);
-      return side.is_edge() && has_frame(reference, side);
-    }
-    side = {};
-    load_held(q + held_tangent_.coordinate_of(index - mesh_.edges()), side);
-    return true;
-  };
-
-  EdgeSide earlier, later;
-  if (!load(mesh_.stations.front().earlier, earlier)) return no_orientation(mesh_.stations.front().earlier, q);
-  for (int k = 0; k < static_cast<int>(mesh_.stations.size()); ++k) {
-    const Station& station = mesh_.stations[at(k)];
-    if (!load(station.later, later)) return no_orientation(station.later, q);
-    const StationStrain<m> strain = strain_between(earlier, later);
-    if (out.wants_values()) out.write_values(k, station, strain.value);
-    if (out.wants_jacobian() || out.wants_curvature()) {
-      const StationColumns columns = station_columns(station, mesh_.edges(), d, m, EdgeSide::angles);
-      Matrix<2 * m, width> turns;
-      set_side(earlier, 0, columns.earlier, turns);
-      set_side(later, m, columns.later, turns);
+  const auto& found = std::get<Found<manifold>>(found_);
+  for (std::size_t k = 0; k < mesh_.stations.size(); ++k) {
+    const Station& station = mesh_.stations[k];
+    const int index = static_cast<int>(k);
+    const EdgeSide& earlier = found.sides[at(station.earlier)];
+    const EdgeSide& later = found.sides[at(station.later)];
+    const StationStrain<manifold>& strain = found.strains[k];
+    if (out.wants_values()) out.write_values(index, station, strain.value);
+    if (!earlier.is_edge() || !later.is_edge()) {
+      const StationColumns columns = station_columns(station, mesh_.edges(), EdgeSide::d, m, EdgeSide::angles);
       if (out.wants_jacobian()) {
-        Matrix<m, 2 * m> by_turns;
-        by_turns.set_block(0, 0, strain.by_earlier);
-        by_turns.set_block(0, m, strain.by_later);
-        out.write_jacobian(k, station, by_turns * turns);
+        out.write_jacobian(index, station, half_station_jacobian(earlier, later, strain, columns));
       }
       if (out.wants_curvature()) {
-        const Vector<m> stress = out.stress(k);
-        Matrix<width, width> h;
-        if constexpr (d == 3) {
-          h = turns.transpose() * (station_curvature(orientation(earlier), orientation(later), stress) * turns);
-        }
-        add_turn_curvature(earlier, strain.by_earlier.transpose() * stress, columns.earlier, h);
-        add_turn_curvature(later, strain.by_later.transpose() * stress, columns.later, h);
-        out.write_curvature(k, h);
+        out.write_curvature(index, half_station_curvature(earlier, later, strain, columns, out.stress(index)));
       }
+      continue;
     }
-    earlier = later;
+    if (out.wants_jacobian()) out.write_jacobian(index, station, station_jacobian(earlier, later, strain));
+    if (out.wants_curvature()) {
+      out.write_curvature(index, station_bend(earlier, later, strain, out.stress(index)));
+    }
   }
   return {};
 }
@@ -409,24 +401,21 @@ template <int d>
 Status Nodes::evaluate_edge_lengths(const SiteEvaluation& out) const noexcept {
   const int varying = mesh_.sliding() ? 1 : 0;
   const int width = 2 * d + varying;
-  const double* q = out.q.data();
-  const double length = mesh_.sliding() ? q[length_.coordinate] : 0.0;
+  if (Status status = find_measures<d>(out); !status.ok()) return status;
+  const double length = mesh_.sliding() ? out.q[at(length_.coordinate)] : 0.0;
   for (int k = 0; k < static_cast<int>(measured_edges_.size()); ++k) {
     const int edge = measured_edges_[at(k)];
-    const double* p = q + position_.coordinate_of(edge);
-    const Vector<d> vector = Vector<d>::load(p + d) - Vector<d>::load(p);
-    const double measured = norm(vector);
-    if (!(measured > 0.0)) return no_orientation(edge, q);
-    const Vector<d> t = vector / measured;
+    const EdgeMeasure<d> measured = measure<d>(edge);
+    const Vector<d>& t = measured.tangent;
     const LinearInLength share = mesh_.stretching() ? LinearInLength{} : mesh_.edge_length[at(edge)];
-    if (!out.values.empty()) out.values[at(k)] = measured - share.at(length);
+    if (!out.values.empty()) out.values[at(k)] = measured.length - share.at(length);
     if (!out.jacobian.empty()) {
       double* b = out.jacobian.data() + k * width;
       for (int i = 0; i < d; ++i) b[i] = -t[i], b[d + i] = t[i];
       if (varying != 0) b[2 * d] = -share.slope;
     }
     if (!out.curvature.empty()) {
-      const double scale = out.stress[at(k)] / measured;
+      const double scale = out.stress[at(k)] / measured.length;
       double* h = out.curvature.data() + k * packed_size(2 * d);
       for (int i = 0; i < d; ++i) {
         for (int j = 0; j < d; ++j) {

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <tuple>
 #include <vector>
 
 #include "core/curve_kinematics/curve_mesh.hpp"
 #include "core/curve_kinematics/fields.hpp"
 #include "core/interfaces/kinematics.hpp"
 #include "core/interfaces/parameter.hpp"
-#include "core/lie/so3.hpp"
+#include "kinematics/nodes/side.hpp"
 
 namespace bowstring {
 
@@ -37,6 +38,16 @@ class Nodes final : public Kinematics {
   SiteDeclaration edge_lengths() const;
   bool needs_spacing(int edge) const noexcept;
 
+  void make_room();
+
+  // What all sites compute first. `failed` naming an edge without a direction or a frame.
+  template <int d>
+  Status find_measures(const SiteEvaluation& evaluation) const noexcept;
+  template <Manifold manifold>
+  Status find_sides(const SiteEvaluation& evaluation) const noexcept;
+  template <int d>
+  EdgeMeasure<d> measure(int edge) const noexcept;
+
   template <Manifold manifold>
   Status evaluate_stations(const SiteEvaluation& evaluation) const noexcept;
   template <int d>
@@ -51,6 +62,17 @@ class Nodes final : public Kinematics {
   /// site `closure`.
   std::vector<int> measured_edges_;
   std::vector<double> first_frame_;  // coordinates of the first edge's orientation in State 1
+
+  // What was computed at a state and serves all of its evaluations: tangent and length of each edge; the sides of the
+  // stations, those of held tangents last, and their strains.
+  template <Manifold manifold>
+  struct Found {
+    std::vector<Side<manifold>> sides;
+    std::vector<StationStrain<manifold>> strains;
+  };
+  mutable std::uint64_t measure_state_ = 0, side_state_ = 0;
+  mutable std::vector<double> measures_;
+  mutable std::tuple<Found<Manifold::circle>, Found<Manifold::direction>, Found<Manifold::rotation>> found_;
 };
 
 }  // namespace bowstring

@@ -107,7 +107,7 @@ class HandEdgeFrames {
     closures_.push_back(closure);
   }
 
-  StationStrain<m> strain_at(const Station& station, const double* q) const {
+  StationStrain<manifold> strain_at(const Station& station, const double* q) const {
     return station_strain(EdgeOrientation::load(q + station.earlier), EdgeOrientation::load(q + station.later));
   }
 
@@ -118,19 +118,19 @@ class HandEdgeFrames {
       const Station& station = stations_[k];
       const auto earlier = EdgeOrientation::load(q + station.earlier);
       const auto later = EdgeOrientation::load(q + station.later);
-      const StationStrain<m> strain = station_strain(earlier, later);
+      const StationStrain<manifold> strain = station_strain(earlier, later);
       const StationTerms<m> law = station_terms(laws_[k], strain.value, length);
       energy += law.energy;
       Matrix<m, 2 * m> b;
-      b.set_block(0, 0, strain.by_earlier);
-      b.set_block(0, m, strain.by_later);
+      b.set_block(0, 0, strain.by_a);
+      b.set_block(0, m, strain.by_b);
       station.map.add_gradient(b.transpose() * law.force, out.gradient.data());
       Matrix<m, 2 * m> cb = b;
       for (int a = 0; a < m; ++a) {
         for (int j = 0; j < 2 * m; ++j) cb(a, j) *= law.modulus[a];
       }
       Matrix<2 * m, 2 * m> h = b.transpose() * cb;
-      if constexpr (!EdgeOrientation::straight) h += station_curvature(earlier, later, law.force);
+      if constexpr (!EdgeOrientation::straight) h += station_curvature(strain, law.force);
       station.map.add_hessian(factor * h, out.hessian.data());
       if constexpr (sliding) {
         sums.gradient += law.by_length;
@@ -162,11 +162,11 @@ class HandEdgeFrames {
     double* jacobian = out.jacobian.data();
     double* hessian = out.hessian.data();
     for (const Closure& closure : closures_) {
-      const auto orientation = EdgeOrientation::load(q + closure.orientation);
+      const Matrix<d, d> r = axes(EdgeOrientation::load(q + closure.orientation));
       const double length = sliding ? closure.share * unknown_length : q[closure.length];
       const double slope = sliding ? closure.share : 1.0;
-      const Vector<d> t = tangent(orientation);
-      const Matrix<d, m> gradient = tangent_gradient(orientation);
+      const Vector<d> t = tangent(r);
+      const Matrix<d, m> gradient = tangent_gradient<manifold>(r);
       const double* p = q + closure.point;
       for (int a = 0; a < d; ++a) {
         out.rows[at(closure.row + a)] = p[d + a] - p[a] - length * t[a];
@@ -177,7 +177,7 @@ class HandEdgeFrames {
         jacobian[*position] = -slope * t[a];
       }
       const Vector<d> weight = Vector<d>::load(multipliers + closure.row);
-      const Matrix<m, m> bend = tangent_curvature(orientation, weight);
+      const Matrix<m, m> bend = tangent_curvature<manifold>(r, weight);
       const Vector<m> pull = gradient.transpose() * weight;
       for (int i = 0, k = 0; i < m; ++i) {
         for (int j = 0; j <= i; ++j, ++k) hessian[closure.turn[k]] -= length * bend(i, j);

@@ -155,11 +155,9 @@ class HandNodes {
     }
   }
 
-  static StationStrain<m> strain_between(const Edge& earlier, const Edge& later) {
+  static StationStrain<manifold> strain_between(const Edge& earlier, const Edge& later) {
     if constexpr (d == 2) {
-      return {{{std::atan2(cross(earlier.tangent, later.tangent), dot(earlier.tangent, later.tangent))}},
-              {{-1.0}},
-              {{1.0}}};
+      return {{{std::atan2(cross(earlier.tangent, later.tangent), dot(earlier.tangent, later.tangent))}}};
     } else {
       return station_strain(Orientation<manifold>{earlier.frame}, Orientation<manifold>{later.frame});
     }
@@ -241,22 +239,21 @@ class HandNodes {
     LengthSums sums;
     for_stations(q, [&](int k, const Edge& earlier, const Edge& later) {
       const Station& station = stations_[at(k)];
-      const StationStrain<m> strain = strain_between(earlier, later);
+      const StationStrain<manifold> strain = strain_between(earlier, later);
       const StationTerms<m> law = station_terms(laws_[at(k)], strain.value, length);
       energy += law.energy;
       // Over the tangent numbers of both orientations first: there the matrices are smallest.
-      const Vector<m> pull = strain.by_earlier.transpose() * law.force;
-      const Vector<m> push = strain.by_later.transpose() * law.force;
-      Matrix<m, m> ca = strain.by_earlier, cb = strain.by_later;
+      const Vector<m> pull = strain.by_a.transpose() * law.force;
+      const Vector<m> push = strain.by_b.transpose() * law.force;
+      Matrix<m, m> ca = strain.by_a, cb = strain.by_b;
       for (int a = 0; a < m; ++a) {
         for (int j = 0; j < m; ++j) ca(a, j) *= law.modulus[a], cb(a, j) *= law.modulus[a];
       }
-      Matrix<m, m> first = strain.by_earlier.transpose() * ca;
-      Matrix<m, m> mixed = strain.by_later.transpose() * ca;
-      Matrix<m, m> second = strain.by_later.transpose() * cb;
+      Matrix<m, m> first = strain.by_a.transpose() * ca;
+      Matrix<m, m> mixed = strain.by_b.transpose() * ca;
+      Matrix<m, m> second = strain.by_b.transpose() * cb;
       if constexpr (d == 3) {
-        const Matrix<2 * m, 2 * m> bend =
-            station_curvature(Orientation<manifold>{earlier.frame}, Orientation<manifold>{later.frame}, law.force);
+        const Matrix<2 * m, 2 * m> bend = station_curvature(strain, law.force);
         first += bend.template block<m, m>(0, 0);
         mixed += bend.template block<m, m>(m, 0);
         second += bend.template block<m, m>(m, m);
@@ -270,8 +267,8 @@ class HandNodes {
       if constexpr (sliding) {
         sums.gradient += law.by_length;
         sums.hessian += law.by_length_twice;
-        const Vector<width> by_length = at_nodes(first_turn * (strain.by_earlier.transpose() * law.mixed),
-                                                 second_turn * (strain.by_later.transpose() * law.mixed));
+        const Vector<width> by_length = at_nodes(first_turn * (strain.by_a.transpose() * law.mixed),
+                                                 second_turn * (strain.by_b.transpose() * law.mixed));
         for (int i = 0; i < width; ++i) out.hessian[at(station.by_length[i])] += factor * by_length[i];
       }
     });

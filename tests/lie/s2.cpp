@@ -65,7 +65,7 @@ TEST_CASE("relative turn and its derivatives in the tangents of both directions"
     const auto expected = reference::hessian<4>([&](const Vector<4, Real>& d) {
       return dot(widen(m), zeta({{d[0], d[1]}}, {{d[2], d[3]}}));
     });
-    const Matrix<4, 4> curvature = relative_turn_curvature(a, b, m);
+    const Matrix<4, 4> curvature = relative_turn_curvature(found, m);
     // It is of the order of the angle, the rounding of u is not.
     CHECK(relative_error(curvature, expected) < (angle < 2.0 ? 2e-14 + 4e-16 / angle : 10.0 * rounding));
     CHECK(relative_error(curvature, widen(curvature.transpose())) < 1e-15);
@@ -86,7 +86,7 @@ TEST_CASE("relative turn of opposite directions is finite") {
   const Rotation a = Rotation::identity(), b{0.0, 0.0, 0.0, 1.0};
   const RelativeTurn turn = relative_turn(a, b);
   CHECK(norm(turn.value) == std::acos(-1.0));
-  const Matrix<4, 4> curvature = relative_turn_curvature(a, b, {{1.0, 2.0}});
+  const Matrix<4, 4> curvature = relative_turn_curvature(turn, {{1.0, 2.0}});
   for (int i = 0; i < 2; ++i) {
     for (int j = 0; j < 2; ++j) CHECK(std::isfinite(turn.by_a(i, j) + turn.by_b(i, j)));
   }
