@@ -38,7 +38,6 @@ Assembly::Assembly(Scene& scene) : scene_(scene) {
   make_tables();
   make_rows();
   q_.assign(at(scene_.coordinates), 0.0);
-  full_gradient_.assign(at(scene_.unknowns), 0.0);
   term_energy_.assign(scene_.energies.size(), 0.0);
   make_scales();
   make_patterns();
@@ -240,27 +239,36 @@ Status Assembly::evaluate(Span<const double> q, const ProblemEvaluation& evaluat
     if (Status status = update_jacobians(); !status.ok()) return status;
   }
   if (!evaluation.gradient.empty()) {
-    std::fill(full_gradient_.begin(), full_gradient_.end(), 0.0);
+    std::fill(evaluation.gradient.begin(), evaluation.gradient.end(), 0.0);
     for (const SiteTable& table : tables_) {
-      if (table.pulls) table.add_gradient(table.stress, full_gradient_.data());
-    }
-    for (std::size_t u = 0; u < free_.size(); ++u) {
-      if (free_[u] >= 0) evaluation.gradient[at(free_[u])] = full_gradient_[u];
+      if (table.pulls) table.add_gradient(table.stress, table.free_unknown, evaluation.gradient.data());
     }
   }
   if (!evaluation.jacobian.empty()) {
     std::fill(evaluation.jacobian.begin(), evaluation.jacobian.end(), 0.0);
-    const int* position = closure_position_.data();
-    for (const SiteTable& table : tables_) {
-      if (table.declaration->site != Site::closure) continue;
-      for (const double entry : table.jacobian) {
-        if (*position >= 0) evaluation.jacobian[at(*position)] += entry;
-        ++position;
-      }
-    }
+    add_closure_jacobian(evaluation.jacobian);
     for (const ConstraintRows& rows : constraints_) rows.add_jacobian(tables_, evaluation.jacobian);
   }
   return {};
+}
+
+void Assembly::add_closure_jacobian(Span<double> out) const noexcept {
+  const int* position = closure_position_.data();
+  const int* run = closure_run_.data();
+  for (const SiteTable& table : tables_) {
+    if (table.declaration->site != Site::closure) continue;
+    const int width = table.width();
+    const double* entry = table.jacobian.data();
+    for (int row = 0; row < table.count() * table.values(); ++row, entry += width, position += width, ++run) {
+      if (*run >= 0) {
+        std::copy_n(entry, width, out.data() + *run);
+        continue;
+      }
+      for (int k = 0; k < width; ++k) {
+        if (position[k] >= 0) out[at(position[k])] += entry[k];
+      }
+    }
+  }
 }
 
 Status Assembly::update_row_hessians(Span<const double> multipliers) {
@@ -417,7 +425,7 @@ Status Assembly::full_gradient(Span<const double> q, Span<const double> multipli
   set_total_stress(1.0, multipliers, true);
   out.assign(at(scene_.unknowns), 0.0);
   for (const SiteTable& table : tables_) {
-    if (table.read) table.add_gradient(table.total_stress, out.data());
+    if (table.read) table.add_gradient(table.total_stress, table.unknown, out.data());
   }
   return {};
 }

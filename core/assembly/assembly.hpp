@@ -125,6 +125,7 @@ class Assembly final : public Problem, public PlaceTables {
   Status sum_term(Span<const double> q, int term, bool modulus);
   /// What a constraint said of its rows' supports, and wrote.
   Status check_rows(std::size_t index, const char* what, const std::vector<RowSupport>& support, int flawed_row) const;
+  void add_closure_jacobian(Span<double> out) const noexcept;
   /// Of the Lagrangian: energies, closure and constraints, at every place, or only where y is not linear in the
   /// unknowns.
   void set_total_stress(double energy_factor, Span<const double> multipliers, bool everywhere) noexcept;
@@ -143,6 +144,7 @@ class Assembly final : public Problem, public PlaceTables {
   std::vector<RowOrigin> origins_;
   std::vector<double> row_lower_, row_upper_, lower_, upper_, scale_;
   std::vector<int> closure_position_;  // of closure Jacobians, table after table
+  std::vector<int> closure_run_;       // of their rows: where all of a row's entries stand in order, or −1
   std::vector<int> order_;
   HessianPattern hessian_pattern_;
   JacobianPattern jacobian_pattern_;
@@ -159,7 +161,7 @@ class Assembly final : public Problem, public PlaceTables {
   Status guard_status_, row_status_;
   bool guard_checked_ = false;
   double energy_ = 0.0;
-  std::vector<double> term_energy_, row_, full_gradient_;
+  std::vector<double> term_energy_, row_;
 };
 
 }  // namespace bowstring

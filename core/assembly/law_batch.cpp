@@ -3,11 +3,30 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/assembly/finite.hpp"
+#include "core/assembly/sizes.hpp"
+
 namespace bowstring {
 
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr int common_dimension = 3;
+
+/// Σ a_i b_i, in sums that do not wait for each other.
+double dot(const std::vector<double>& a, const std::vector<double>& b) noexcept {
+  constexpr std::size_t lanes = 8;
+  double sum[lanes] = {};
+  std::size_t i = 0;
+  for (; i + lanes <= a.size(); i += lanes) {
+    for (std::size_t k = 0; k < lanes; ++k) sum[k] += a[i + k] * b[i + k];
+  }
+  for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
+  double total = 0.0;
+  for (const double lane : sum) total += lane;
+  return total;
+}
 
 }  // namespace
 
@@ -25,115 +44,141 @@ LawAssembly::LawAssembly(const LawUse& use, const SiteTable& site, const std::ve
   dimension_ = declaration.values - (varies_ ? 2 : 0);
   divides_ = description.site == Site::station || description.site == Site::edge;
   weighs_ = description.measure == Measure::per_length && (divides_ || description.site == Site::node);
+  bool all = count_ == site.count();
+  for (int i = 0; all && i < count_; ++i) all = place_[at(i)] == i;
+  as_it_stands_ = all && !divides_ && !varies_;
   x_.assign(at(count_ * dimension_), 0.0);
   reference_ = x_;
   stress_ = x_;
   energy_.assign(at(count_), 0.0);
   modulus_.assign(at(count_ * packed_size(dimension_)), 0.0);
-  ds_.assign(at(count_), 1.0);
+  measure_.assign(at(count_), 1.0);
+  by_ds_.assign(at(count_), 1.0);
   for (int i = 0; i < count_; ++i) {
-    if (!declaration.ds.empty()) ds_[at(i)] = declaration.ds[at(place_[at(i)])];
     const double* y = reference.data() + place_[at(i)] * declaration.values;
-    const double ds = varies_ ? y[dimension_] : ds_[at(i)];
+    const double fixed = declaration.ds.empty() ? 1.0 : declaration.ds[at(place_[at(i)])];
+    const double ds = varies_ ? y[dimension_] : fixed;
+    measure_[at(i)] = weight_[at(i)] * (weighs_ ? fixed : 1.0);
+    if (divides_) by_ds_[at(i)] = 1.0 / fixed;
     for (int k = 0; k < dimension_; ++k) reference_[at(i * dimension_ + k)] = divides_ ? y[k] / ds : y[k];
   }
   for (const std::vector<double>& parameter : use.parameters) parameter_.push_back(parameter.data());
 }
 
 void LawAssembly::read(const SiteTable& site) {
-  for (int i = 0; i < count_; ++i) {
-    const double* y = site.y.data() + place_[at(i)] * site.values();
-    if (varies_) ds_[at(i)] = y[dimension_];
-    const double scale = divides_ ? 1.0 / ds_[at(i)] : 1.0;
-    for (int k = 0; k < dimension_; ++k) x_[at(i * dimension_ + k)] = y[k] * scale;
+  if (as_it_stands_) return;
+  for (int i = 0; varies_ && i < count_; ++i) {
+    const double ds = site.y[at(place_[at(i)] * site.values() + dimension_)];
+    if (weighs_) measure_[at(i)] = weight_[at(i)] * ds;
+    if (divides_) by_ds_[at(i)] = 1.0 / ds;
   }
+  with_size<common_dimension>(dimension_, [&](auto fixed) {
+    const int n = fixed == 0 ? dimension_ : fixed;
+    for (int i = 0; i < count_; ++i) {
+      const double* y = site.y.data() + place_[at(i)] * site.values();
+      for (int k = 0; k < n; ++k) x_[at(i * n + k)] = y[k] * by_ds_[at(i)];
+    }
+  });
 }
 
-LawBatch LawAssembly::batch() const {
+LawBatch LawAssembly::batch(const SiteTable& site) const {
   LawBatch batch;
   batch.count = count_;
   batch.dimension = dimension_;
-  batch.x = x_.data();
+  batch.x = as_it_stands_ ? site.y.data() : x_.data();
   batch.reference = reference_.data();
   batch.parameter = parameter_.data();
   return batch;
 }
 
 Status LawAssembly::check(const std::vector<double>& numbers, const char* what) const {
-  double sum = 0.0;
-  for (const double number : numbers) sum += number;
-  if (std::isfinite(sum)) return {};
+  if (all_finite(numbers.data(), numbers.size())) return {};
   const std::size_t per_place = numbers.size() / at(count_);
-  for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (std::isfinite(numbers[k])) continue;
-    return Status::failure(Code::failed, std::string("its ") + what + " is not a finite number at " +
-                                             site_name(use_->description.site) + " " +
-                                             std::to_string(place_[k / per_place]));
-  }
-  return {};  // finite numbers whose sum overflows are large, not wrong
+  std::size_t k = 0;
+  while (std::isfinite(numbers[k])) ++k;
+  return Status::failure(Code::failed, std::string("its ") + what + " is not a finite number at " +
+                                           site_name(use_->description.site) + " " +
+                                           std::to_string(place_[k / per_place]));
 }
 
 Status LawAssembly::evaluate(SiteTable& site, double* energy) {
   if (count_ == 0) return {};
   read(site);
-  LawBatch batch = this->batch();
+  LawBatch batch = this->batch(site);
   batch.energy = energy_.data();
   batch.stress = stress_.data();
   if (Status status = use_->law->evaluate(batch); !status.ok()) return status;
   if (Status status = check(energy_, "energy"); !status.ok()) return status;
   if (Status status = check(stress_, "stress"); !status.ok()) return status;
-  for (int i = 0; i < count_; ++i) {
-    // E = weight · m(ds) · W(y/d(ds)), with m = ds or 1 and d = ds or 1.
-    const double ds = ds_[at(i)];
-    const double measure = weight_[at(i)] * (weighs_ ? ds : 1.0);
-    const double scale = divides_ ? 1.0 / ds : 1.0;
-    *energy += measure * energy_[at(i)];
-    const double* w = stress_.data() + i * dimension_;
-    double* out = site.stress.data() + place_[at(i)] * site.values();
-    for (int k = 0; k < dimension_; ++k) out[k] += measure * scale * w[k];
-    if (!varies_) continue;
-    double work = 0.0;
-    for (int k = 0; k < dimension_; ++k) work += x_[at(i * dimension_ + k)] * w[k];
-    out[dimension_] += (weighs_ ? weight_[at(i)] * energy_[at(i)] : 0.0) - (divides_ ? measure / ds * work : 0.0);
-  }
+  *energy += dot(measure_, energy_);
+  add_stress(site);
+  if (varies_) add_length_stress(site);
   return {};
+}
+
+void LawAssembly::add_stress(SiteTable& site) const {
+  with_size<common_dimension>(dimension_, [&](auto fixed) {
+    const int n = fixed == 0 ? dimension_ : fixed;
+    for (int i = 0; i < count_; ++i) {
+      const double factor = measure_[at(i)] * by_ds_[at(i)];
+      double* out = site.stress.data() + place_[at(i)] * site.values();
+      for (int k = 0; k < n; ++k) out[k] += factor * stress_[at(i * n + k)];
+    }
+  });
+}
+
+void LawAssembly::add_length_stress(SiteTable& site) const {
+  for (int i = 0; i < count_; ++i) {
+    double work = 0.0;
+    for (int k = 0; k < dimension_; ++k) work += x_[at(i * dimension_ + k)] * stress_[at(i * dimension_ + k)];
+    double& out = site.stress[at(place_[at(i)] * site.values() + dimension_)];
+    out +=
+        (weighs_ ? weight_[at(i)] * energy_[at(i)] : 0.0) - (divides_ ? measure_[at(i)] * by_ds_[at(i)] * work : 0.0);
+  }
 }
 
 Status LawAssembly::add_modulus(SiteTable& site) {
   if (count_ == 0 || (use_->description.linear && !varies_)) return {};
-  read(site);
-  LawBatch batch = this->batch();
-  batch.stress = stress_.data();
+  LawBatch batch = this->batch(site);
   batch.modulus = modulus_.data();
   if (Status status = use_->law->evaluate(batch); !status.ok()) return status;
   if (Status status = check(modulus_, "modulus"); !status.ok()) return status;
-  const int n = dimension_;
-  for (int i = 0; i < count_; ++i) {
-    const double ds = ds_[at(i)];
-    const double measure = weight_[at(i)] * (weighs_ ? ds : 1.0);
-    const double scale = divides_ ? 1.0 / ds : 1.0;
-    const double* c = modulus_.data() + i * packed_size(n);
-    double* out = site.modulus.data() + place_[at(i)] * packed_size(site.values());
-    for (int k = 0; k < packed_size(n); ++k) out[k] += measure * scale * scale * c[k];
-    if (!varies_) continue;
-
-    // The rules that Law states, for m and d each ds or 1.
-    const double* w = stress_.data() + i * n;
-    const double* x = x_.data() + i * n;
-    const double slope = weighs_ ? weight_[at(i)] : 0.0;
-    const double rate = divides_ ? measure / ds : 0.0;
-    double work = 0.0;
-    double quadratic = 0.0;
-    for (int k = 0; k < n; ++k) {
-      double cx = 0.0;
-      for (int l = 0; l < n; ++l) cx += c[k >= l ? packed_index(k, l) : packed_index(l, k)] * x[l];
-      out[packed_index(n, k)] += slope * scale * w[k] - rate * scale * (w[k] + cx);
-      work += x[k] * w[k];
-      quadratic += x[k] * cx;
+  with_size<common_dimension>(dimension_, [&](auto fixed) {
+    const int numbers = packed_size(fixed == 0 ? dimension_ : fixed);
+    for (int i = 0; i < count_; ++i) {
+      const double factor = measure_[at(i)] * by_ds_[at(i)] * by_ds_[at(i)];
+      double* out = site.modulus.data() + place_[at(i)] * packed_size(site.values());
+      for (int k = 0; k < numbers; ++k) out[k] += factor * modulus_[at(i * numbers + k)];
     }
-    if (divides_) out[packed_index(n, n)] += -2.0 * slope / ds * work + rate / ds * (2.0 * work + quadratic);
-  }
+  });
+  if (varies_) add_length_modulus(site);
   return {};
+}
+
+/// The rules that Law states, for m and d each ds or 1.
+void LawAssembly::add_length_modulus(SiteTable& site) const {
+  with_size<common_dimension>(dimension_, [&](auto fixed) {
+    const int n = fixed == 0 ? dimension_ : fixed;
+    for (int i = 0; i < count_; ++i) {
+      const double* c = modulus_.data() + i * packed_size(n);
+      const double* w = stress_.data() + i * n;
+      const double* x = x_.data() + i * n;
+      double* out = site.modulus.data() + place_[at(i)] * packed_size(site.values());
+      const double scale = by_ds_[at(i)];
+      const double slope = weighs_ ? weight_[at(i)] : 0.0;
+      const double rate = divides_ ? measure_[at(i)] * scale : 0.0;
+      double work = 0.0;
+      double quadratic = 0.0;
+      for (int k = 0; k < n; ++k) {
+        double cx = 0.0;
+        for (int l = 0; l < n; ++l) cx += c[k >= l ? packed_index(k, l) : packed_index(l, k)] * x[l];
+        out[packed_index(n, k)] += slope * scale * w[k] - rate * scale * (w[k] + cx);
+        work += x[k] * w[k];
+        quadratic += x[k] * cx;
+      }
+      if (divides_) out[packed_index(n, n)] += scale * (rate * (2.0 * work + quadratic) - 2.0 * slope * work);
+    }
+  });
 }
 
 }  // namespace bowstring

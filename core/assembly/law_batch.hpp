@@ -17,12 +17,15 @@ class LawAssembly {
   /// Adds the sum of the energies to `energy` and the stress to `site.stress`. A number that is not finite is
   /// `failed`, and names the place.
   Status evaluate(SiteTable& site, double* energy);
-  /// Adds the modulus to `site.modulus`.
+  /// Adds the modulus to `site.modulus`, at the state of the last `evaluate`.
   Status add_modulus(SiteTable& site);
 
  private:
   void read(const SiteTable& site);
-  LawBatch batch() const;
+  void add_stress(SiteTable& site) const;
+  void add_length_stress(SiteTable& site) const;
+  void add_length_modulus(SiteTable& site) const;
+  LawBatch batch(const SiteTable& site) const;
   Status check(const std::vector<double>& numbers, const char* what) const;
 
   const LawUse* use_;
@@ -30,7 +33,10 @@ class LawAssembly {
   std::vector<double> weight_;
   int count_, dimension_;
   bool divides_, weighs_, varies_;
-  std::vector<double> x_, ds_, reference_, energy_, stress_, modulus_;
+  bool as_it_stands_;  // the law reads y of all places, undivided: no copy
+  // E = measure · W(y · by_ds), with measure = weight·ds or weight, and by_ds = 1/ds or 1.
+  std::vector<double> measure_, by_ds_;
+  std::vector<double> x_, reference_, energy_, stress_, modulus_;
   std::vector<const double*> parameter_;
 };
 

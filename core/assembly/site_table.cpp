@@ -29,8 +29,9 @@ inline void congruence(double factor, const double* modulus, const double* b, in
   double cb[max_values * max_width];
   for (int a = 0; a < values; ++a) {
     double* row = cb + a * width;
-    for (int j = 0; j < width; ++j) row[j] = 0.0;
-    for (int c = 0; c < values; ++c) {
+    const double first = factor * modulus[packed_index(a, 0)];
+    for (int j = 0; j < width; ++j) row[j] = first * b[j];
+    for (int c = 1; c < values; ++c) {
       const double entry = factor * modulus[a >= c ? packed_index(a, c) : packed_index(c, a)];
       for (int j = 0; j < width; ++j) row[j] += entry * b[c * width + j];
     }
@@ -53,7 +54,8 @@ inline void add_block(const double* block, int n, int first, double* out) noexce
   }
 }
 
-inline void scatter(const double* numbers, const int* position, int count, bool free, double* out) noexcept {
+[[gnu::always_inline]] inline void scatter(const double* numbers, const int* position, int count, bool free,
+                                           double* out) noexcept {
   if (free) {
     for (int k = 0; k < count; ++k) out[position[k]] += numbers[k];
     return;
@@ -143,17 +145,20 @@ Status SiteTable::update_curvature(Span<const double> curve_q, std::uint64_t sta
   return ask(evaluation, curve_q, state);
 }
 
-void SiteTable::add_gradient(const std::vector<double>& place_stress, double* out) const noexcept {
-  const int ny = values();
+void SiteTable::add_gradient(const std::vector<double>& place_stress, const std::vector<int>& where,
+                             double* out) const noexcept {
   if (declaration->identity) {
-    for (std::size_t k = 0; k < unknown.size(); ++k) out[unknown[k]] += place_stress[k];
+    for (std::size_t k = 0; k < where.size(); ++k) {
+      if (where[k] >= 0) out[where[k]] += place_stress[k];
+    }
     return;
   }
+  const int ny = values();
   with_size<common_width>(width(), [&](auto fixed_width) {
     const int w = fixed_width == 0 ? width() : fixed_width;
     for (int i = 0; i < count(); ++i) {
       const double* s = place_stress.data() + at(i) * at(ny);
-      const int* u = unknown.data() + at(i) * at(w);
+      const int* u = where.data() + at(i) * at(w);
       const double* b = jacobian.data() + at(i) * at(ny) * at(w);
       double sum[max_width];
       for (int j = 0; j < w; ++j) sum[j] = s[0] * b[j];
@@ -175,7 +180,7 @@ void SiteTable::add_hessian(double factor, double* hessian) const noexcept {
       const double* second = modulus.empty() ? curvature.data() : modulus.data();
       double local[packed_size(max_width)];
       for (int k = 0; k < packed; ++k) local[k] = (modulus.empty() ? 1.0 : factor) * second[at(i) * at(packed) + at(k)];
-      scatter(local, hessian_position.data() + at(i) * at(packed), packed, free[at(i)] != 0, hessian);
+      scatter(local, hessian_position.data() + at(i) * at(packed), packed, all_free[at(i)] != 0, hessian);
     }
     return;
   }
@@ -190,7 +195,8 @@ void SiteTable::add_hessian(double factor, double* hessian) const noexcept {
         congruence<fixed_values, fixed_width>(factor, modulus.data() + at(i) * at(packed_size(values())),
                                               jacobian.data() + at(i) * at(values()) * at(w), stiff, w, local);
         add_block(curvature.data() + at(i) * at(packed_size(bent)), bent, declaration->bent_first, local);
-        scatter(local, hessian_position.data() + at(i) * at(packed_size(w)), packed_size(w), free[at(i)] != 0, hessian);
+        scatter(local, hessian_position.data() + at(i) * at(packed_size(w)), packed_size(w), all_free[at(i)] != 0,
+                hessian);
       }
     });
   });

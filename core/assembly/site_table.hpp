@@ -22,8 +22,9 @@ struct SiteTable {
   std::vector<double> modulus;        ///< count × packed_size(values); empty where nothing has one
   std::vector<double> curvature;      ///< count × packed_size(bent()); empty where the site is linear
   std::vector<int> unknown;           ///< count × width: scene-wide tangent number, −1 pads
+  std::vector<int> free_unknown;      ///< count × width: free unknown, −1 where it is fixed or pads
   std::vector<int> hessian_position;  ///< count × packed_size(hessian_width()), −1 where an unknown is fixed
-  std::vector<char> free;             ///< count: none of those positions is −1
+  std::vector<char> all_free;         ///< count: none of those positions is −1
 
   int count() const noexcept { return declaration->count; }
   int values() const noexcept { return declaration->values; }
@@ -40,8 +41,8 @@ struct SiteTable {
   /// Σ total_stress ∂²y/∂δ² at every place.
   Status update_curvature(Span<const double> curve_q, std::uint64_t state);
 
-  /// out += Σ_places Bᵀ stress, over scene-wide tangent numbers.
-  void add_gradient(const std::vector<double>& place_stress, double* out) const noexcept;
+  /// out[where] += Σ_places Bᵀ stress. `where`: `unknown` or `free_unknown`.
+  void add_gradient(const std::vector<double>& place_stress, const std::vector<int>& where, double* out) const noexcept;
   /// hessian += factor · BᵀCB + curvature, through `hessian_position`.
   void add_hessian(double factor, double* hessian) const noexcept;
 

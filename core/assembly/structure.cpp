@@ -75,6 +75,7 @@ void Assembly::make_tables() {
     for (const SiteDeclaration& site : curve->declaration.sites) {
       table_of_[at(curve->view.index * site_count + static_cast<int>(site.site))] = static_cast<int>(tables_.size());
       tables_.push_back(make_site_table(*curve, site));
+      for (const int u : tables_.back().unknown) tables_.back().free_unknown.push_back(u < 0 ? -1 : free_[at(u)]);
     }
   }
   const std::vector<double> reference = scene_.reference_coordinates();
@@ -226,10 +227,11 @@ void Assembly::make_patterns() {
   hessian_pattern_.finish(blocks_);
 
   closure_position_.clear();
+  closure_run_.clear();
   int row = 0;
   for (SiteTable& table : tables_) {
     table.hessian_position.clear();
-    table.free.clear();
+    table.all_free.clear();
     const bool closure = table.declaration->site == Site::closure;
     for (int i = 0; i < table.count(); ++i) {
       stencil(table, i);
@@ -245,11 +247,19 @@ void Assembly::make_patterns() {
             table.hessian_position.push_back(held ? -1 : hessian_pattern_.position(blocks_, ua, ub));
           }
         }
-        table.free.push_back(free);
+        table.all_free.push_back(free);
       }
       if (!closure) continue;
       for (int a = 0; a < table.values(); ++a, ++row) {
-        for (const int u : free_stencil) closure_position_.push_back(u < 0 ? -1 : jacobian_pattern_.position(row, u));
+        int run = -1;
+        for (std::size_t k = 0; k < free_stencil.size(); ++k) {
+          const int u = free_stencil[k];
+          const int position = u < 0 ? -1 : jacobian_pattern_.position(row, u);
+          closure_position_.push_back(position);
+          if (k == 0) run = position;
+          if (run >= 0 && position != run + static_cast<int>(k)) run = -1;
+        }
+        closure_run_.push_back(run);
       }
     }
   }

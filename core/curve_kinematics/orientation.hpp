@@ -96,14 +96,17 @@ inline Vector2 tangent(const PlanarOrientation& o) noexcept { return {{std::cos(
 inline Vector3 tangent(const DirectionOrientation& o) noexcept { return o.rotation.first_axis(); }
 inline Vector3 tangent(const FrameOrientation& o) noexcept { return o.rotation.first_axis(); }
 
-/// ∂t/∂δ. In space R Exp(δ) e₁ = R (e₁ + δ × e₁ + ½ δ × (δ × e₁) + …), with δ × e₁ = (0, δ₃, −δ₂).
+/// Component `k` of ∂t/∂δ. In space R Exp(δ) e₁ = R (e₁ + δ × e₁ + ½ δ × (δ × e₁) + …), with δ × e₁ = (0, δ₃, −δ₂).
 template <Manifold manifold>
-auto tangent_gradient(const Matrix<Orientation<manifold>::dimension, Orientation<manifold>::dimension>& axes) noexcept {
-  constexpr int m = Orientation<manifold>::components;
-  Matrix<Orientation<manifold>::dimension, m> out;
-  out.set_column(m - 1, axes.column(1));
-  if constexpr (m > 1) out.set_column(m - 2, -axes.column(2));
-  return out;
+Vector<Orientation<manifold>::components> tangent_gradient(
+    const Matrix<Orientation<manifold>::dimension, Orientation<manifold>::dimension>& axes, int k) noexcept {
+  if constexpr (manifold == Manifold::circle) {
+    return {{axes(k, 1)}};
+  } else if constexpr (manifold == Manifold::direction) {
+    return {{-axes(k, 2), axes(k, 1)}};
+  } else {
+    return {{0.0, -axes(k, 2), axes(k, 1)}};
+  }
 }
 
 /// w·∂²t/∂δ². In space, with g = Rᵀw, the second-order term above is g·½(δ₁δ − |δ|² e₁).

@@ -20,21 +20,29 @@ constexpr int per_node_unit = 1;
 class FoundationLaw final : public Law {
  public:
   Status evaluate(const LawBatch& batch) const noexcept override {
-    const int n = batch.dimension;
+    batch.dimension == 2 ? evaluate<2>(batch) : evaluate<3>(batch);
+    return {};
+  }
+
+ private:
+  template <int n>
+  static void evaluate(const LawBatch& batch) noexcept {
+    const double* stiffness = batch.parameter[0];
     for (int i = 0; i < batch.count; ++i) {
-      const double k = batch.parameter[0][i];
       double squared = 0.0;
       for (int a = 0; a < n; ++a) {
         const double u = batch.x[i * n + a] - batch.reference[i * n + a];
         squared += u * u;
-        if (batch.stress != nullptr) batch.stress[i * n + a] = k * u;
-        if (batch.modulus == nullptr) continue;
-        double* c = batch.modulus + i * packed_size(n);
-        for (int b = 0; b <= a; ++b) c[packed_index(a, b)] = a == b ? k : 0.0;
+        if (batch.stress != nullptr) batch.stress[i * n + a] = stiffness[i] * u;
       }
-      if (batch.energy != nullptr) batch.energy[i] = 0.5 * k * squared;
+      if (batch.energy != nullptr) batch.energy[i] = 0.5 * stiffness[i] * squared;
     }
-    return {};
+    for (int i = 0; batch.modulus != nullptr && i < batch.count; ++i) {
+      double* c = batch.modulus + i * packed_size(n);
+      for (int a = 0; a < n; ++a) {
+        for (int b = 0; b <= a; ++b) c[packed_index(a, b)] = a == b ? stiffness[i] : 0.0;
+      }
+    }
   }
 };
 

@@ -45,23 +45,36 @@ bool vanishes(const Profile& profile) {
 class StrainLaw final : public Law {
  public:
   Status evaluate(const LawBatch& batch) const noexcept override {
-    const int n = batch.dimension;
+    if (batch.dimension == 1) evaluate<1>(batch);
+    if (batch.dimension == 2) evaluate<2>(batch);
+    if (batch.dimension == 3) evaluate<3>(batch);
+    return {};
+  }
+
+ private:
+  template <int n>
+  static double stiffness(const LawBatch& batch, int i, int k) noexcept {
+    return batch.parameter[n == 3 && k == 0 ? 1 : 0][i];
+  }
+
+  template <int n>
+  static void evaluate(const LawBatch& batch) noexcept {
     for (int i = 0; i < batch.count; ++i) {
       double energy = 0.0;
       for (int k = 0; k < n; ++k) {
-        const bool twist = n == 3 && k == 0;
-        const double stiffness = batch.parameter[twist ? 1 : 0][i];
         const double difference = batch.x[i * n + k] - batch.reference[i * n + k];
-        energy += 0.5 * stiffness * difference * difference;
-        if (batch.stress != nullptr) batch.stress[i * n + k] = stiffness * difference;
-        if (batch.modulus != nullptr) {
-          double* c = batch.modulus + i * packed_size(n);
-          for (int l = 0; l <= k; ++l) c[packed_index(k, l)] = k == l ? stiffness : 0.0;
-        }
+        const double stress = stiffness<n>(batch, i, k) * difference;
+        energy += 0.5 * stress * difference;
+        if (batch.stress != nullptr) batch.stress[i * n + k] = stress;
       }
       if (batch.energy != nullptr) batch.energy[i] = energy;
     }
-    return {};
+    for (int i = 0; batch.modulus != nullptr && i < batch.count; ++i) {
+      double* c = batch.modulus + i * packed_size(n);
+      for (int k = 0; k < n; ++k) {
+        for (int l = 0; l <= k; ++l) c[packed_index(k, l)] = k == l ? stiffness<n>(batch, i, k) : 0.0;
+      }
+    }
   }
 };
 

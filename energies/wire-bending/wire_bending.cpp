@@ -19,28 +19,31 @@ constexpr ParameterDeclaration schema[] = {
 class BendingLaw final : public Law {
  public:
   Status evaluate(const LawBatch& batch) const noexcept override {
-    const int n = batch.dimension;
-    const int first = n == 3 ? 1 : 0;
+    if (batch.dimension == 1) evaluate<1>(batch);
+    if (batch.dimension == 2) evaluate<2>(batch);
+    if (batch.dimension == 3) evaluate<3>(batch);
+    return {};
+  }
+
+ private:
+  template <int n>
+  static void evaluate(const LawBatch& batch) noexcept {
+    constexpr int first = n == 3 ? 1 : 0;
     const double* stiffness = batch.parameter[0];
-    for (int i = 0; i < batch.count; ++i) {
-      const double* kappa = batch.x + i * n;
-      const double ei = stiffness[i];
-      if (batch.energy != nullptr) {
-        double squared = 0.0;
-        for (int k = first; k < n; ++k) squared += kappa[k] * kappa[k];
-        batch.energy[i] = 0.5 * ei * squared;
-      }
-      if (batch.stress != nullptr) {
-        for (int k = 0; k < n; ++k) batch.stress[i * n + k] = k < first ? 0.0 : ei * kappa[k];
-      }
-      if (batch.modulus != nullptr) {
-        double* c = batch.modulus + i * packed_size(n);
-        for (int k = 0; k < n; ++k) {
-          for (int l = 0; l <= k; ++l) c[packed_index(k, l)] = k == l && k >= first ? ei : 0.0;
-        }
+    for (int i = 0; batch.energy != nullptr && i < batch.count; ++i) {
+      double squared = 0.0;
+      for (int k = first; k < n; ++k) squared += batch.x[i * n + k] * batch.x[i * n + k];
+      batch.energy[i] = 0.5 * stiffness[i] * squared;
+    }
+    for (int i = 0; batch.stress != nullptr && i < batch.count; ++i) {
+      for (int k = 0; k < n; ++k) batch.stress[i * n + k] = k < first ? 0.0 : stiffness[i] * batch.x[i * n + k];
+    }
+    for (int i = 0; batch.modulus != nullptr && i < batch.count; ++i) {
+      double* c = batch.modulus + i * packed_size(n);
+      for (int k = 0; k < n; ++k) {
+        for (int l = 0; l <= k; ++l) c[packed_index(k, l)] = k == l && k >= first ? stiffness[i] : 0.0;
       }
     }
-    return {};
   }
 };
 

@@ -298,19 +298,20 @@ void EdgeFrames::evaluate_closure(const SiteEvaluation& out) const noexcept {
     const double unknown =
         mesh_.stretching() ? q[edge_length_.coordinate_of(edge)] : (mesh_.sliding() ? q[length_.coordinate] : 0.0);
     const Vector<d> t = tangent(r);
+    const double edge_length = length.at(unknown);
     if (!out.values.empty()) {
       const double* p = q + position_.coordinate_of(edge);
-      for (int a = 0; a < d; ++a) out.values[at(k * d + a)] = p[d + a] - p[a] - length.at(unknown) * t[a];
+      for (int a = 0; a < d; ++a) out.values[at(k * d + a)] = p[d + a] - p[a] - edge_length * t[a];
     }
-    if (out.jacobian.empty() && out.curvature.empty()) continue;
-    const Matrix<d, m> gradient = tangent_gradient<manifold>(r);
     if (!out.jacobian.empty()) {
       double* b = out.jacobian.data() + k * d * width;
-      std::fill(b, b + d * width, 0.0);
       for (int a = 0; a < d; ++a, b += width) {
-        b[a] = -1.0;
-        b[d + a] = 1.0;
-        for (int j = 0; j < m; ++j) b[2 * d + j] = -length.at(unknown) * gradient(a, j);
+        const Vector<m> gradient = tangent_gradient<manifold>(r, a);
+        for (int j = 0; j < d; ++j) {
+          b[j] = j == a ? -1.0 : 0.0;
+          b[d + j] = j == a ? 1.0 : 0.0;
+        }
+        for (int j = 0; j < m; ++j) b[2 * d + j] = -edge_length * gradient[j];
         if (varying) b[fixed_columns] = -length.slope * t[a];
       }
     }
@@ -318,9 +319,11 @@ void EdgeFrames::evaluate_closure(const SiteEvaluation& out) const noexcept {
       const Vector<d> weight = Vector<d>::load(out.stress.data() + k * d);
       const Matrix<m, m> bend = tangent_curvature<manifold>(r, weight);
       double* h = out.curvature.data() + k * packed_size(width - 2 * d);
+      Vector<m> pull;
+      for (int a = 0; a < d; ++a) pull += weight[a] * tangent_gradient<manifold>(r, a);
       for (int i = 0; i < m; ++i) {
-        for (int j = 0; j <= i; ++j) h[packed_index(i, j)] = -length.at(unknown) * bend(i, j);
-        if (varying) h[packed_index(m, i)] = -length.slope * dot(weight, gradient.column(i));
+        for (int j = 0; j <= i; ++j) h[packed_index(i, j)] = -edge_length * bend(i, j);
+        if (varying) h[packed_index(m, i)] = -length.slope * pull[i];
       }
       if (varying) h[packed_index(m, m)] = 0.0;
     }

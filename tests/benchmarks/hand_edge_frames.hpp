@@ -166,19 +166,20 @@ class HandEdgeFrames {
       const double length = sliding ? closure.share * unknown_length : q[closure.length];
       const double slope = sliding ? closure.share : 1.0;
       const Vector<d> t = tangent(r);
-      const Matrix<d, m> gradient = tangent_gradient<manifold>(r);
       const double* p = q + closure.point;
       for (int a = 0; a < d; ++a) {
         out.rows[at(closure.row + a)] = p[d + a] - p[a] - length * t[a];
         const int* position = closure.jacobian[a];
         jacobian[*position++] = -1.0;
         jacobian[*position++] = 1.0;
-        for (int k = 0; k < m; ++k) jacobian[*position++] = -length * gradient(a, k);
+        const Vector<m> gradient = tangent_gradient<manifold>(r, a);
+        for (int k = 0; k < m; ++k) jacobian[*position++] = -length * gradient[k];
         jacobian[*position] = -slope * t[a];
       }
       const Vector<d> weight = Vector<d>::load(multipliers + closure.row);
       const Matrix<m, m> bend = tangent_curvature<manifold>(r, weight);
-      const Vector<m> pull = gradient.transpose() * weight;
+      Vector<m> pull;
+      for (int a = 0; a < d; ++a) pull += weight[a] * tangent_gradient<manifold>(r, a);
       for (int i = 0, k = 0; i < m; ++i) {
         for (int j = 0; j <= i; ++j, ++k) hessian[closure.turn[k]] -= length * bend(i, j);
         hessian[closure.by_length[i]] -= slope * pull[i];
