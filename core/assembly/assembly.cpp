@@ -253,17 +253,17 @@ Status Assembly::evaluate(Span<const double> q, const ProblemEvaluation& evaluat
 }
 
 void Assembly::add_closure_jacobian(Span<double> out) const noexcept {
+  for (const Run& run : closure_runs_) {
+    std::copy_n(tables_[at(run.table)].jacobian.data() + run.first, run.count, out.data() + run.position);
+  }
   const int* position = closure_position_.data();
-  const int* run = closure_run_.data();
+  const char* in_run = closure_in_run_.data();
   for (const SiteTable& table : tables_) {
     if (table.declaration->site != Site::closure) continue;
     const int width = table.width();
     const double* entry = table.jacobian.data();
-    for (int row = 0; row < table.count() * table.values(); ++row, entry += width, position += width, ++run) {
-      if (*run >= 0) {
-        std::copy_n(entry, width, out.data() + *run);
-        continue;
-      }
+    for (int row = 0; row < table.count() * table.values(); ++row, entry += width, position += width) {
+      if (*in_run++ != 0) continue;
       for (int k = 0; k < width; ++k) {
         if (position[k] >= 0) out[at(position[k])] += entry[k];
       }

@@ -106,6 +106,8 @@ class Assembly final : public Problem, public PlaceTables {
   void make_rows();
   Status bind_rows() noexcept;
   void make_patterns();
+  /// A row of a closure site: its entries begin at `first` of the table's Jacobian and stand at `position`.
+  void note_closure_row(int table, int first, const int* position);
   void make_order();
   void make_scales();
   ConstraintRows make_constraint_rows(const ConstraintUse& use, int first_row);
@@ -144,7 +146,12 @@ class Assembly final : public Problem, public PlaceTables {
   std::vector<RowOrigin> origins_;
   std::vector<double> row_lower_, row_upper_, lower_, upper_, scale_;
   std::vector<int> closure_position_;  // of closure Jacobians, table after table
-  std::vector<int> closure_run_;       // of their rows: where all of a row's entries stand in order, or −1
+  /// Consecutive entries of a closure Jacobian that stand in the same order in the scene's.
+  struct Run {
+    int table = 0, first = 0, position = 0, count = 0;
+  };
+  std::vector<Run> closure_runs_;     // longest ones
+  std::vector<char> closure_in_run_;  // per row
   std::vector<int> order_;
   HessianPattern hessian_pattern_;
   JacobianPattern jacobian_pattern_;

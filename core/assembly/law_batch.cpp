@@ -16,16 +16,16 @@ constexpr int common_dimension = 3;
 
 /// Σ a_i b_i, in sums that do not wait for each other.
 double dot(const std::vector<double>& a, const std::vector<double>& b) noexcept {
-  constexpr std::size_t lanes = 8;
-  double sum[lanes] = {};
+  double sum[4] = {};
   std::size_t i = 0;
-  for (; i + lanes <= a.size(); i += lanes) {
-    for (std::size_t k = 0; k < lanes; ++k) sum[k] += a[i + k] * b[i + k];
+  for (; i + 4 <= a.size(); i += 4) {
+    sum[0] += a[i] * b[i];
+    sum[1] += a[i + 1] * b[i + 1];
+    sum[2] += a[i + 2] * b[i + 2];
+    sum[3] += a[i + 3] * b[i + 3];
   }
   for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
-  double total = 0.0;
-  for (const double lane : sum) total += lane;
-  return total;
+  return sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
 }  // namespace

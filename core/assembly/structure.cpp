@@ -227,7 +227,8 @@ void Assembly::make_patterns() {
   hessian_pattern_.finish(blocks_);
 
   closure_position_.clear();
-  closure_run_.clear();
+  closure_runs_.clear();
+  closure_in_run_.clear();
   int row = 0;
   for (SiteTable& table : tables_) {
     table.hessian_position.clear();
@@ -251,20 +252,33 @@ void Assembly::make_patterns() {
       }
       if (!closure) continue;
       for (int a = 0; a < table.values(); ++a, ++row) {
-        int run = -1;
-        for (std::size_t k = 0; k < free_stencil.size(); ++k) {
-          const int u = free_stencil[k];
-          const int position = u < 0 ? -1 : jacobian_pattern_.position(row, u);
-          closure_position_.push_back(position);
-          if (k == 0) run = position;
-          if (run >= 0 && position != run + static_cast<int>(k)) run = -1;
+        const auto first = closure_position_.size();
+        for (const int u : free_stencil) {
+          closure_position_.push_back(u < 0 ? -1 : jacobian_pattern_.position(row, u));
         }
-        closure_run_.push_back(run);
+        note_closure_row(static_cast<int>(&table - tables_.data()), (i * table.values() + a) * table.width(),
+                         closure_position_.data() + first);
       }
     }
   }
   for (ConstraintRows& rows : constraints_) rows.locate(blocks_, hessian_pattern_, jacobian_pattern_);
   make_order();
+}
+
+void Assembly::note_closure_row(int table, int first, const int* position) {
+  const int width = tables_[at(table)].width();
+  bool in_order = position[0] >= 0;
+  for (int k = 0; k < width; ++k) in_order = in_order && position[k] == position[0] + k;
+  closure_in_run_.push_back(in_order ? 1 : 0);
+  if (!in_order) return;
+  if (!closure_runs_.empty()) {
+    Run& last = closure_runs_.back();
+    if (last.table == table && last.first + last.count == first && last.position + last.count == position[0]) {
+      last.count += width;
+      return;
+    }
+  }
+  closure_runs_.push_back({table, first, position[0], width});
 }
 
 void Assembly::make_order() {
