@@ -128,16 +128,26 @@ class WallContact final : public Constraint {
     const Wall wall = wall_at(*evaluation.at);
     const double* wire = evaluation.at->table(wire_.index, Site::node);
     const bool derivatives = !evaluation.jacobian.empty() || !evaluation.hessian.empty();
-    if (Status status = find(evaluation, wall, wire, derivatives); !status.ok()) return status;
     const bool all_places = evaluation.support.empty();
     double* jacobian = evaluation.jacobian.data();
     double* hessian = evaluation.hessian.data();
-    for (std::size_t r = 0; r < active_.size(); ++r) {
-      const Row& row = rows_[active_[r]];
-      const Found& found = found_.rows[r];
-      const int numbers = row.places() * dimension_;
+    const auto first = static_cast<std::size_t>(evaluation.first);
+    const std::size_t count = evaluation.count < 0 ? active_.size() : static_cast<std::size_t>(evaluation.count);
+    for (std::size_t r = 0; r < count; ++r) {
+      const Row& row = rows_[active_[first + r]];
+      Found& found = found_[first + r];
+      if (evaluation.state == 0 || found.state != evaluation.state) {
+        found.point = locate(row, wall, wire);
+        found.state = evaluation.state;
+        found.expanded = false;
+      }
+      if (found.point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
       if (!evaluation.residual.empty()) evaluation.residual[r] = found.point.gap;
-      if (derivatives && !all_places) evaluation.support[r] = support(row, found.expansion);
+      if (!derivatives) continue;
+      if (!found.expanded) found.expansion = expand(wall, found.point);
+      found.expanded = true;
+      const int numbers = row.places() * dimension_;
+      if (!all_places) evaluation.support[r] = support(row, found.expansion);
       if (jacobian != nullptr) {
         write_gradient(row, wall, found.expansion, all_places, jacobian);
         jacobian += numbers;
@@ -154,7 +164,7 @@ class WallContact final : public Constraint {
     const Wall wall = wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
     for (Row& row : rows_) refer_to(row, wall, wire);
-    found_.state = 0;
+    forget();
     return {};
   }
 
@@ -227,33 +237,13 @@ class WallContact final : public Constraint {
   }
 
  private:
-  /// What the last evaluation found at a state: its second derivatives come from the same closest points.
+  /// What the last evaluation of a row found: further ones at that state have the same closest point.
   struct Found {
+    std::uint64_t state = 0;  // 0: nothing
+    bool expanded = false;
     RowPoint point;
     contact::GapExpansion expansion;
   };
-  struct FoundState {
-    std::uint64_t state = 0;  // 0: nothing
-    bool expanded = false;
-    std::vector<Found> rows;  // of active_
-  };
-
-  Status find(const RowEvaluation& evaluation, const Wall& wall, const double* wire, bool derivatives) const noexcept {
-    if (evaluation.state == 0 || evaluation.state != found_.state) {
-      found_.state = 0;
-      found_.expanded = false;
-      for (std::size_t r = 0; r < active_.size(); ++r) {
-        RowPoint& point = found_.rows[r].point;
-        point = locate(rows_[active_[r]], wall, wire);
-        if (point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
-      }
-      found_.state = evaluation.state;
-    }
-    if (!derivatives || found_.expanded) return {};
-    for (Found& found : found_.rows) found.expansion = expand(wall, found.point);
-    found_.expanded = true;
-    return {};
-  }
 
   Wall wall_at(const PlaceTables& at) const noexcept { return wall_of(at.table(vessel_.index, Site::node)); }
   Wall wall_of(const double* points) const noexcept {
@@ -412,8 +402,11 @@ class WallContact final : public Constraint {
     } else {
       select_segments();
     }
-    found_.state = 0;
-    found_.rows.resize(active_.size());
+    found_.assign(active_.size(), {});
+  }
+
+  void forget() {
+    for (Found& found : found_) found.state = 0;
   }
 
   void select_segments() {
@@ -428,6 +421,7 @@ class WallContact final : public Constraint {
 
   void describe(RowDeclaration& out) const {
     out.rows = static_cast<int>(active_.size());
+    out.in_parts = true;
     out.place_begin.assign(1, 0);
     out.places.clear();
     for (const std::size_t r : active_) {
@@ -486,7 +480,7 @@ class WallContact final : public Constraint {
   std::vector<int> node_row_, chord_row_;     // per wire node and segment: its row, −1 where there is none
   std::vector<SegmentState> segments_state_;  // per segment; under segment-wise contact only
   std::vector<std::size_t> active_;           // rows that stand in the problem
-  mutable FoundState found_;
+  mutable std::vector<Found> found_;          // of active_
 };
 
 }  // namespace

@@ -203,23 +203,25 @@ Status Assembly::update_constraint(std::size_t index, bool jacobian) {
     while (std::isfinite(evaluation.residual[at(row)])) ++row;
     status = Status::failure(Code::failed, "row " + std::to_string(row) + " is not a finite number");
   }
-  if (status.ok() && jacobian) {
-    return check_rows(index, "derivative", rows.jacobian_support, rows.flawed_jacobian_row());
-  }
-  return status.ok() ? status : named(std::move(status), "constraint '" + use.label + "'");
+  if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
+  if (!jacobian) return {};
+  if (Status flaw = check_supports(index, rows.jacobian_support, 0, rows.rows()); !flaw.ok()) return flaw;
+  const int flawed = rows.flawed_jacobian_row();
+  return flawed < 0 ? Status{} : not_finite(index, "derivative", flawed);
 }
 
-Status Assembly::check_rows(std::size_t index, const char* what, const std::vector<RowSupport>& support,
-                            int flawed_row) const {
-  int misfit = 0;
-  const int rows = constraints_[index].rows();
-  while (misfit < rows && constraints_[index].fits(misfit, support[at(misfit)])) ++misfit;
-  if (misfit == rows && flawed_row < 0) return {};
-  return Status::failure(
-      Code::failed, "constraint '" + scene_.constraints[index].label + "': " +
-                        (misfit < rows ? "row " + std::to_string(misfit) + " depends on places that it does not have"
-                                       : std::string("a ") + what + " of row " + std::to_string(flawed_row) +
-                                             " is not a finite number"));
+Status Assembly::check_supports(std::size_t index, const std::vector<RowSupport>& support, int first, int end) const {
+  for (int r = first; r < end; ++r) {
+    if (constraints_[index].fits(r, support[at(r)])) continue;
+    return Status::failure(Code::failed, "constraint '" + scene_.constraints[index].label + "': row " +
+                                             std::to_string(r) + " depends on places that it does not have");
+  }
+  return {};
+}
+
+Status Assembly::not_finite(std::size_t index, const char* what, int row) const {
+  return Status::failure(Code::failed, "constraint '" + scene_.constraints[index].label + "': a " + what + " of row " +
+                                           std::to_string(row) + " is not a finite number");
 }
 
 Status Assembly::evaluate(Span<const double> q, const ProblemEvaluation& evaluation) noexcept {
@@ -271,21 +273,27 @@ void Assembly::add_closure_jacobian(Span<double> out) const noexcept {
   }
 }
 
-Status Assembly::update_row_hessians(Span<const double> multipliers) {
+Status Assembly::add_row_hessians(Span<const double> multipliers, Span<double> values) {
   for (std::size_t c = 0; c < constraints_.size(); ++c) {
     const ConstraintUse& use = scene_.constraints[c];
     ConstraintRows& rows = constraints_[c];
-    RowEvaluation evaluation;
-    evaluation.at = this;
-    evaluation.state = state_;
-    evaluation.weight = {multipliers.data() + rows.first_row, at(rows.rows())};
-    evaluation.hessian = rows.hessian;
     std::copy(rows.all_places.begin(), rows.all_places.end(), rows.hessian_support.begin());
-    evaluation.support = rows.hessian_support;
-    Status status = use.constraint->evaluate(evaluation);
-    if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
-    status = check_rows(c, "second derivative", rows.hessian_support, rows.flawed_hessian_row());
-    if (!status.ok()) return status;
+    for (int first = 0, end = 0; first < rows.rows(); first = end) {
+      end = rows.part_end(first);
+      RowEvaluation evaluation;
+      evaluation.at = this;
+      evaluation.state = state_;
+      if (rows.in_parts) evaluation.first = first, evaluation.count = end - first;
+      evaluation.weight = {multipliers.data() + rows.first_row + first, at(end - first)};
+      evaluation.hessian = rows.hessian;
+      evaluation.support = {rows.hessian_support.data() + first, at(end - first)};
+      Status status = use.constraint->evaluate(evaluation);
+      if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
+      if (Status flaw = check_supports(c, rows.hessian_support, first, end); !flaw.ok()) return flaw;
+      const int flawed = rows.flawed_hessian_row(first, end);
+      if (flawed >= 0) return not_finite(c, "second derivative", flawed);
+      rows.add_hessian(first, end, tables_, values);
+    }
   }
   return {};
 }
@@ -319,8 +327,7 @@ Status Assembly::lagrangian_hessian(Span<const double> q, double energy_factor, 
       return named(std::move(status), "energy '" + scene_.energies[at(slot.energy)].label + "'");
     }
   }
-  if (Status status = update_row_hessians(multipliers); !status.ok()) return status;
-  for (const ConstraintRows& rows : constraints_) rows.add_hessian(tables_, values);
+  if (Status status = add_row_hessians(multipliers, values); !status.ok()) return status;
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
     Status status = table.update_curvature(curve_q(table.curve), state_);

@@ -122,11 +122,13 @@ class Assembly final : public Problem, public PlaceTables {
   bool folds(const SiteTable& table) const noexcept;
   Status update_rows(bool jacobian);
   Status update_constraint(std::size_t index, bool jacobian);
-  Status update_row_hessians(Span<const double> multipliers);
+  /// values += Σ multiplier ∇²r of the constraints.
+  Status add_row_hessians(Span<const double> multipliers, Span<double> values);
   /// Brings every place's stress, and with `modulus` its modulus, to those of one energy alone.
   Status sum_term(Span<const double> q, int term, bool modulus);
-  /// What a constraint said of its rows' supports, and wrote.
-  Status check_rows(std::size_t index, const char* what, const std::vector<RowSupport>& support, int flawed_row) const;
+  /// What a constraint said of its rows' supports.
+  Status check_supports(std::size_t index, const std::vector<RowSupport>& support, int first, int end) const;
+  Status not_finite(std::size_t index, const char* what, int row) const;
   void add_closure_jacobian(Span<double> out) const noexcept;
   /// Of the Lagrangian: energies, closure and constraints, at every place, or only where y is not linear in the
   /// unknowns.

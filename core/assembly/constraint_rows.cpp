@@ -10,6 +10,9 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+constexpr int rows_per_part = 8;  // whose second derivatives stay in the nearest cache
+constexpr int max_block = 32;     // unknowns of a place
+
 /// B of one place that a row reads; null where B = I.
 const double* place_jacobian(const std::vector<SiteTable>& tables, const ConstraintRows::Read& read) noexcept {
   if (read.identity) return nullptr;
@@ -40,32 +43,84 @@ double congruence(const double* h, const ConstraintRows::Read& a, const double* 
 
 }  // namespace
 
+int ConstraintRows::part_end(int row) const noexcept {
+  return in_parts ? std::min(row + rows_per_part, rows()) : rows();
+}
+
 void ConstraintRows::reserve_derivatives() {
   jacobian.assign(at(jacobian_begin.back()), 0.0);
-  hessian.assign(at(hessian_begin.back()), 0.0);
+  int largest = 0;
+  for (int r = 0; r < rows(); r = part_end(r)) {
+    largest = std::max(largest, hessian_begin[at(part_end(r))] - hessian_begin[at(r)]);
+  }
+  hessian.assign(at(largest), 0.0);
   all_places.clear();
   for (int r = 0; r < rows(); ++r) all_places.push_back({0, 0, read_begin[at(r) + 1] - read_begin[at(r)]});
   jacobian_support = hessian_support = all_places;
 }
 
-void ConstraintRows::locate(const BlockLayout& blocks, const HessianPattern& hessian_pattern,
+/// The number of unknowns of each place, where it is the same for all and B = I; 0 otherwise.
+int ConstraintRows::block_of(int row) const noexcept {
+  const int first = read_begin[at(row)], end = read_begin[at(row) + 1];
+  for (int p = first; p < end; ++p) {
+    if (!reads[at(p)].identity || reads[at(p)].width != reads[at(first)].width) return 0;
+  }
+  return first == end ? 0 : reads[at(first)].width;
+}
+
+bool ConstraintRows::locate_blocks(int row, const BlockLayout& layout, const HessianPattern& pattern) {
+  const int block = block_of(row);
+  if (block == 0) return false;
+  const int* u = unknown.data() + unknown_begin[at(row)];
+  const int count = unknown_begin[at(row) + 1] - unknown_begin[at(row)];
+  if (std::any_of(u, u + count, [](int free) { return free < 0; })) return false;
+  Blocks found{block, static_cast<int>(base.size()), static_cast<int>(length.size())};
+  const SparsityPattern view = pattern.view();
+  for (int p = 0; p < count / block; ++p) {
+    const int first = u[p * block];
+    length.push_back(view.begin[at(first) + 1] - view.begin[at(first)]);
+    for (int s = 0; s <= p; ++s) {
+      const bool swapped = u[s * block] > first;
+      const int from = pattern.position(layout, first, u[s * block]);
+      base.push_back(swapped ? ~from : from);
+      const int columns = length[at(found.first_length + (swapped ? p : s))];
+      for (int i = 0; i < block; ++i) {
+        for (int j = 0; j < (s == p ? i + 1 : block); ++j) {
+          const int column = swapped ? i : j, inner = swapped ? j : i;
+          const int expected = from + inner + column * columns - column * (column + 1) / 2;
+          if (pattern.position(layout, u[p * block + i], u[s * block + j]) == expected) continue;
+          base.resize(at(found.first_base));
+          length.resize(at(found.first_length));
+          return false;
+        }
+      }
+    }
+  }
+  blocks[at(row)] = found;
+  return true;
+}
+
+void ConstraintRows::locate(const BlockLayout& layout, const HessianPattern& hessian_pattern,
                             const JacobianPattern& jacobian_pattern) {
   jacobian_position.clear();
   hessian_position.clear();
-  free.clear();
+  base.clear();
+  length.clear();
+  blocks.assign(at(rows()), {});
   hessian_position_begin.assign(1, 0);
   for (int r = 0; r < rows(); ++r) {
     const int* u = unknown.data() + unknown_begin[at(r)];
     const int count = unknown_begin[at(r) + 1] - unknown_begin[at(r)];
-    char none_held = 1;
     for (int a = 0; a < count; ++a) {
-      if (u[a] < 0) none_held = 0;
       jacobian_position.push_back(u[a] < 0 ? -1 : jacobian_pattern.position(first_row + r, u[a]));
-      for (int b = 0; b <= a; ++b) {
-        hessian_position.push_back(u[a] < 0 || u[b] < 0 ? -1 : hessian_pattern.position(blocks, u[a], u[b]));
+    }
+    if (!locate_blocks(r, layout, hessian_pattern)) {
+      for (int a = 0; a < count; ++a) {
+        for (int b = 0; b <= a; ++b) {
+          hessian_position.push_back(u[a] < 0 || u[b] < 0 ? -1 : hessian_pattern.position(layout, u[a], u[b]));
+        }
       }
     }
-    free.push_back(none_held);
     hessian_position_begin.push_back(static_cast<int>(hessian_position.size()));
   }
 }
@@ -74,18 +129,11 @@ const ConstraintRows::Read& ConstraintRows::read_of(int row, const RowSupport& s
   return reads[at(read_begin[at(row)] + support.place(k))];
 }
 
-ConstraintRows::Stretches ConstraintRows::stretches(int row, const RowSupport& support) const noexcept {
-  const Read* read = reads.data() + read_begin[at(row)];
-  const auto end = [read](int places) {
-    return places == 0 ? 0 : read[places - 1].first_value + read[places - 1].values;
-  };
-  Stretches out;
-  out.lead = end(support.lead);
-  if (support.count == 0) return out;
-  const int first = read[support.first].first_value;
-  out.shift = first - out.lead;
-  out.tail = end(support.first + support.count) - first;
-  return out;
+int ConstraintRows::values_of(int row, const RowSupport& support) const noexcept {
+  if (blocks[at(row)].block != 0) return blocks[at(row)].block * support.places();
+  int values = 0;
+  for (int k = 0; k < support.places(); ++k) values += read_of(row, support, k).values;
+  return values;
 }
 
 bool ConstraintRows::fits(int row, const RowSupport& support) const noexcept {
@@ -96,16 +144,16 @@ bool ConstraintRows::fits(int row, const RowSupport& support) const noexcept {
 
 int ConstraintRows::flawed_jacobian_row() const noexcept {
   for (int r = 0; r < rows(); ++r) {
-    const auto count = at(stretches(r, jacobian_support[at(r)]).values());
+    const auto count = at(values_of(r, jacobian_support[at(r)]));
     if (!all_finite(jacobian.data() + jacobian_begin[at(r)], count)) return r;
   }
   return -1;
 }
 
-int ConstraintRows::flawed_hessian_row() const noexcept {
-  for (int r = 0; r < rows(); ++r) {
-    const auto count = at(packed_size(stretches(r, hessian_support[at(r)]).values()));
-    if (!all_finite(hessian.data() + hessian_begin[at(r)], count)) return r;
+int ConstraintRows::flawed_hessian_row(int first, int end) const noexcept {
+  for (int r = first; r < end; ++r) {
+    const auto count = at(packed_size(values_of(r, hessian_support[at(r)])));
+    if (!all_finite(hessian.data() + hessian_begin[at(r)] - hessian_begin[at(first)], count)) return r;
   }
   return -1;
 }
@@ -114,10 +162,18 @@ void ConstraintRows::add_jacobian(const std::vector<SiteTable>& tables, Span<dou
   for (int r = 0; r < rows(); ++r) {
     const RowSupport& support = jacobian_support[at(r)];
     const double* r_y = jacobian.data() + jacobian_begin[at(r)];
+    const int* row_position = jacobian_position.data() + unknown_begin[at(r)];
+    if (const int block = blocks[at(r)].block; block != 0) {
+      for (int p = 0; p < support.places(); ++p, r_y += block) {
+        double* place = out.data() + row_position[support.place(p) * block];
+        for (int k = 0; k < block; ++k) place[k] += r_y[k];
+      }
+      continue;
+    }
     for (int p = 0; p < support.places(); ++p) {
       const Read& read = read_of(r, support, p);
       const double* b = place_jacobian(tables, read);
-      const int* position = jacobian_position.data() + unknown_begin[at(r)] + read.first_unknown;
+      const int* position = row_position + read.first_unknown;
       for (int k = 0; k < read.width; ++k) {
         if (position[k] < 0) continue;
         double sum = b == nullptr ? r_y[k] : 0.0;
@@ -129,41 +185,63 @@ void ConstraintRows::add_jacobian(const std::vector<SiteTable>& tables, Span<dou
   }
 }
 
-void ConstraintRows::add_hessian(const std::vector<SiteTable>& tables, Span<double> out) const noexcept {
-  for (int r = 0; r < rows(); ++r) {
-    if (identity) {
-      add_identity_row_hessian(r, out);
-    } else {
-      add_row_hessian(r, tables, out);
+void ConstraintRows::add_hessian(int first, int end, const std::vector<SiteTable>& tables,
+                                 Span<double> out) const noexcept {
+  for (int r = first; r < end; ++r) {
+    const double* h = hessian.data() + hessian_begin[at(r)] - hessian_begin[at(first)];
+    switch (blocks[at(r)].block) {
+      case 0:
+        add_row_hessian(r, h, tables, out);
+        break;
+      case 2:
+        add_block_hessian<2>(r, h, out.data());
+        break;
+      case 3:
+        add_block_hessian<3>(r, h, out.data());
+        break;
+      default:
+        add_block_hessian<0>(r, h, out.data());
     }
   }
 }
 
-void ConstraintRows::add_identity_row_hessian(int row, Span<double> out) const noexcept {
-  const Stretches values = stretches(row, hessian_support[at(row)]);  // which are unknowns, too
-  const double* h = hessian.data() + hessian_begin[at(row)];
-  const int* position = hessian_position.data() + hessian_position_begin[at(row)];
-  const bool all_free = free[at(row)] != 0;
-  for (int i = 0; i < values.values(); ++i) {
-    const int* in_row = position + packed_size(i < values.lead ? i : i + values.shift);
-    const int columns = i + 1;
-    const int lead = std::min(values.lead, columns);
-    if (all_free) {
-      for (int j = 0; j < lead; ++j) out[at(in_row[j])] += h[j];
-      for (int j = lead; j < columns; ++j) out[at(in_row[values.shift + j])] += h[j];
-    } else {
-      for (int j = 0; j < columns; ++j) {
-        const int where = in_row[j < lead ? j : values.shift + j];
-        if (where >= 0) out[at(where)] += h[j];
+template <int fixed_block>
+void ConstraintRows::add_block_hessian(int row, const double* h, double* out) const noexcept {
+  const Blocks& found = blocks[at(row)];
+  const int block = fixed_block == 0 ? found.block : fixed_block;
+  const RowSupport& support = hessian_support[at(row)];
+  const int* of_pair = base.data() + found.first_base;
+  const int* of_place = length.data() + found.first_length;
+  for (int p = 0; p < support.places(); ++p) {
+    const int place = support.place(p);
+    const double* from[fixed_block == 0 ? max_block : fixed_block];  // the rows of h
+    for (int i = 0; i < block; ++i) {
+      from[i] = h;
+      h += p * block + i + 1;
+    }
+    for (int s = 0; s <= p; ++s) {
+      const int other = support.place(s);
+      const int first = of_pair[packed_index(place, other)];
+      if (first < 0) {
+        double* to = out + ~first;
+        for (int i = 0; i < block; ++i) {
+          for (int j = 0; j < block; ++j) to[j] += from[i][s * block + j];
+          to += of_place[place] - i - 1;
+        }
+        continue;
+      }
+      double* to = out + first;
+      for (int j = 0; j < block; ++j) {
+        for (int i = s == p ? j : 0; i < block; ++i) to[i] += from[i][s * block + j];
+        to += of_place[other] - j - 1;
       }
     }
-    h += columns;
   }
 }
 
-void ConstraintRows::add_row_hessian(int row, const std::vector<SiteTable>& tables, Span<double> out) const noexcept {
+void ConstraintRows::add_row_hessian(int row, const double* h, const std::vector<SiteTable>& tables,
+                                     Span<double> out) const noexcept {
   const RowSupport& support = hessian_support[at(row)];
-  const double* h = hessian.data() + hessian_begin[at(row)];
   const int* position = hessian_position.data() + hessian_position_begin[at(row)];
   int row_y = 0;
   for (int p = 0; p < support.places(); ++p) {

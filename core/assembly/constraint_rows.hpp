@@ -18,50 +18,61 @@ struct ConstraintRows {
     bool identity = true;                    ///< B = I
   };
 
+  /// The unknowns of a row's places, where each place has `block` of them, all free and in order. Then the entry (i, j)
+  /// of places p ≥ s stands at base + i + j L − j (j + 1)/2, with L the length of the column of j = 0: columns of one
+  /// block in a compressed lower triangle become shorter by one each. Where p's unknowns come before s's, i and j
+  /// change places and the base is stored as its complement.
+  struct Blocks {
+    int block = 0;         ///< 0: the row is not of this kind, and `hessian_position` has its entries
+    int first_base = 0;    ///< into `base`: packed over the row's places
+    int first_length = 0;  ///< into `length`: per place
+  };
+
   int first_row = 0;
+  bool in_parts = false;                                      ///< rows can be evaluated a few at a time
   std::vector<Read> reads;                                    ///< of all rows, in declaration order
   std::vector<int> read_begin;                                ///< rows + 1
-  std::vector<double> jacobian, hessian;                      ///< as the constraint writes them
+  std::vector<double> jacobian, hessian;                      ///< as the constraint writes them; `hessian` of one part
   std::vector<int> jacobian_begin, hessian_begin;             ///< rows + 1
   std::vector<RowSupport> all_places;                         ///< per row
   std::vector<RowSupport> jacobian_support, hessian_support;  ///< per row: as the constraint says
   std::vector<int> unknown, unknown_begin;                    ///< per row: free unknowns that it reads, −1 where held
   std::vector<int> jacobian_position;                         ///< per entry of `unknown`
+  std::vector<Blocks> blocks;                                 ///< per row
+  std::vector<int> base, length;
   std::vector<int> hessian_position, hessian_position_begin;  ///< per row: packed over its unknowns
-  std::vector<char> free;                                     ///< per row: none of its unknowns is held
   bool identity = true;                                       ///< every place of every row has B = I
 
   int rows() const noexcept { return static_cast<int>(read_begin.size()) - 1; }
+  /// The row after the last of the part that begins with `row`: how many rows' second derivatives are held at once.
+  int part_end(int row) const noexcept;
 
   void reserve_derivatives();
-  void locate(const BlockLayout& blocks, const HessianPattern& hessian_pattern,
+  void locate(const BlockLayout& layout, const HessianPattern& hessian_pattern,
               const JacobianPattern& jacobian_pattern);
 
   /// Whether a constraint may say so of a row.
   bool fits(int row, const RowSupport& support) const noexcept;
   /// The first row with a derivative that is not finite; −1: none.
   int flawed_jacobian_row() const noexcept;
-  int flawed_hessian_row() const noexcept;
+  int flawed_hessian_row(int first, int end) const noexcept;
 
   /// out += ∂r/∂y B.
   void add_jacobian(const std::vector<SiteTable>& tables, Span<double> out) const noexcept;
-  /// out += Bᵀ H B, H being the weighted second derivatives in `hessian`.
-  void add_hessian(const std::vector<SiteTable>& tables, Span<double> out) const noexcept;
+  /// out += Bᵀ H B of the rows of one part, H being the weighted second derivatives in `hessian`.
+  void add_hessian(int first, int end, const std::vector<SiteTable>& tables, Span<double> out) const noexcept;
   /// total_stress += multiplier · ∂r/∂y at every place that is read: what the rows pull with.
   void add_stress(Span<const double> multipliers, std::vector<SiteTable>& tables) const noexcept;
 
  private:
   /// The k-th place that a row depends on.
   const Read& read_of(int row, const RowSupport& support, int k) const noexcept;
-  /// Which of a row's numbers those of its support are: the first `lead`, and `tail` that are `shift` places later
-  /// among all than among those of the support.
-  struct Stretches {
-    int lead = 0, shift = 0, tail = 0;
-    int values() const noexcept { return lead + tail; }
-  };
-  Stretches stretches(int row, const RowSupport& support) const noexcept;
-  void add_row_hessian(int row, const std::vector<SiteTable>& tables, Span<double> out) const noexcept;
-  void add_identity_row_hessian(int row, Span<double> out) const noexcept;
+  int values_of(int row, const RowSupport& support) const noexcept;
+  int block_of(int row) const noexcept;
+  bool locate_blocks(int row, const BlockLayout& layout, const HessianPattern& pattern);
+  void add_row_hessian(int row, const double* h, const std::vector<SiteTable>& tables, Span<double> out) const noexcept;
+  template <int fixed_block>
+  void add_block_hessian(int row, const double* h, double* out) const noexcept;
 };
 
 }  // namespace bowstring

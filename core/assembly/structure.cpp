@@ -104,6 +104,7 @@ void Assembly::make_tables() {
 ConstraintRows Assembly::make_constraint_rows(const ConstraintUse& use, int first_row) {
   ConstraintRows out;
   out.first_row = first_row;
+  out.in_parts = use.rows.in_parts;
   const RowDeclaration& rows = use.rows;
   out.read_begin.assign(1, 0);
   out.jacobian_begin.assign(1, 0);

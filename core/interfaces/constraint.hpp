@@ -32,6 +32,9 @@ struct RowDeclaration {
   /// The first curve, a wire, belongs inside of the second's lumen: the certificate then looks whether it passes
   /// through the wall between its rows.
   bool inside_lumen = false;
+  /// `evaluate` can be asked for some of the rows alone (RowEvaluation::first), so that second derivatives of many rows
+  /// need not be held at once.
+  bool in_parts = false;
   std::vector<std::string> warnings;
   std::vector<IdleParameter> without_effect;
 };
@@ -63,6 +66,9 @@ struct RowEvaluation {
   /// than the segment of its closest point) may narrow its entry: of its numbers in `jacobian` and `hessian`, which
   /// begin where they always do, those of these places then come first, packed, and the rest is not read.
   Span<RowSupport> support;
+  /// Only where the declaration says `in_parts`: rows first … first + count − 1 alone are asked for, and every span
+  /// above is theirs. −1: all rows.
+  int first = 0, count = -1;
   /// The same number means that `at` holds the same places as in the last call that had it, and that nothing was
   /// accepted or bound in between: what was found then may serve again. No two states of a process share one. 0:
   /// unknown.
