@@ -1,6 +1,7 @@
 #include "core/assembly/constraint_rows.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/assembly/finite.hpp"
 
@@ -10,8 +11,9 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr int rows_per_part = 8;  // whose second derivatives stay in the nearest cache
-constexpr int max_block = 32;     // unknowns of a place
+constexpr int rows_per_part = 8;                          // whose second derivatives stay in the nearest cache
+constexpr int max_block = 32;                             // unknowns of a place
+constexpr int no_base = std::numeric_limits<int>::min();  // of a pair with a held place
 
 /// B of one place that a row reads; null where B = I.
 const double* place_jacobian(const std::vector<SiteTable>& tables, const ConstraintRows::Read& read) noexcept {
@@ -71,27 +73,34 @@ int ConstraintRows::block_of(int row) const noexcept {
 bool ConstraintRows::locate_blocks(int row, const BlockLayout& layout, const HessianPattern& pattern) {
   const int block = block_of(row);
   if (block == 0) return false;
+  const Blocks found{block, static_cast<int>(base.size()), static_cast<int>(length.size())};
   const int* u = unknown.data() + unknown_begin[at(row)];
-  const int count = unknown_begin[at(row) + 1] - unknown_begin[at(row)];
-  if (std::any_of(u, u + count, [](int free) { return free < 0; })) return false;
-  Blocks found{block, static_cast<int>(base.size()), static_cast<int>(length.size())};
   const SparsityPattern view = pattern.view();
-  for (int p = 0; p < count / block; ++p) {
-    const int first = u[p * block];
-    length.push_back(view.begin[at(first) + 1] - view.begin[at(first)]);
+  const auto give_up = [&] {
+    base.resize(at(found.first_base));
+    length.resize(at(found.first_length));
+    return false;
+  };
+  for (int p = 0; p < all_places[at(row)].count; ++p) {
+    const int* of_p = u + p * block;
+    const auto held = std::count_if(of_p, of_p + block, [](int free) { return free < 0; });
+    if (held != 0 && held != block) return give_up();
+    length.push_back(held != 0 ? 0 : view.begin[at(*of_p) + 1] - view.begin[at(*of_p)]);
     for (int s = 0; s <= p; ++s) {
-      const bool swapped = u[s * block] > first;
-      const int from = pattern.position(layout, first, u[s * block]);
-      base.push_back(swapped ? ~from : from);
+      const int* of_s = u + s * block;
+      if (*of_p < 0 || *of_s < 0) {
+        base.push_back(no_base);
+        continue;
+      }
+      const bool swapped = *of_s > *of_p;
+      const int first = pattern.position(layout, *of_p, *of_s);
       const int columns = length[at(found.first_length + (swapped ? p : s))];
+      base.push_back(swapped ? ~first : first);
       for (int i = 0; i < block; ++i) {
         for (int j = 0; j < (s == p ? i + 1 : block); ++j) {
           const int column = swapped ? i : j, inner = swapped ? j : i;
-          const int expected = from + inner + column * columns - column * (column + 1) / 2;
-          if (pattern.position(layout, u[p * block + i], u[s * block + j]) == expected) continue;
-          base.resize(at(found.first_base));
-          length.resize(at(found.first_length));
-          return false;
+          const int expected = first + inner + column * columns - column * (column + 1) / 2;
+          if (pattern.position(layout, of_p[i], of_s[j]) != expected) return give_up();
         }
       }
     }
@@ -165,8 +174,9 @@ void ConstraintRows::add_jacobian(const std::vector<SiteTable>& tables, Span<dou
     const int* row_position = jacobian_position.data() + unknown_begin[at(r)];
     if (const int block = blocks[at(r)].block; block != 0) {
       for (int p = 0; p < support.places(); ++p, r_y += block) {
-        double* place = out.data() + row_position[support.place(p) * block];
-        for (int k = 0; k < block; ++k) place[k] += r_y[k];
+        const int position = row_position[support.place(p) * block];
+        if (position < 0) continue;
+        for (int k = 0; k < block; ++k) out[at(position + k)] += r_y[k];
       }
       continue;
     }
@@ -222,6 +232,7 @@ void ConstraintRows::add_block_hessian(int row, const double* h, double* out) co
     for (int s = 0; s <= p; ++s) {
       const int other = support.place(s);
       const int first = of_pair[packed_index(place, other)];
+      if (first == no_base) continue;
       if (first < 0) {
         double* to = out + ~first;
         for (int i = 0; i < block; ++i) {

@@ -18,10 +18,10 @@ struct ConstraintRows {
     bool identity = true;                    ///< B = I
   };
 
-  /// The unknowns of a row's places, where each place has `block` of them, all free and in order. Then the entry (i, j)
-  /// of places p ≥ s stands at base + i + j L − j (j + 1)/2, with L the length of the column of j = 0: columns of one
-  /// block in a compressed lower triangle become shorter by one each. Where p's unknowns come before s's, i and j
-  /// change places and the base is stored as its complement.
+  /// The unknowns of a row's places, where each place has `block` of them, all free and in order or all held. Then the
+  /// entry (i, j) of places p ≥ s stands at base + i + j L − j (j + 1)/2, with L the length of the column of j = 0:
+  /// columns of one block in a compressed lower triangle become shorter by one each. Where p's unknowns come before
+  /// s's, i and j change places and the base is stored as its complement.
   struct Blocks {
     int block = 0;         ///< 0: the row is not of this kind, and `hessian_position` has its entries
     int first_base = 0;    ///< into `base`: packed over the row's places

@@ -26,6 +26,7 @@ inline void congruence(double factor, const double* modulus, const double* b, in
                        double* out) noexcept {
   if constexpr (fixed_values != 0) values = fixed_values;
   if constexpr (fixed_width != 0) width = fixed_width;
+  if (values < 1 || width < 1) return;
   double cb[max_values * max_width];
   for (int a = 0; a < values; ++a) {
     double* row = cb + a * width;
