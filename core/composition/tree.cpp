@@ -55,7 +55,10 @@ namespace {
 
 /// A text as a message can show it: on one line and not too long.
 std::string shown(const std::string& text) {
-  constexpr std::size_t longest = 80;
+  std::size_t longest = 80;
+  while (longest < text.size() && longest > 0 && (static_cast<unsigned char>(text[longest]) & 0xc0U) == 0x80U) {
+    --longest;  // no letter of UTF-8 is cut
+  }
   std::string result;
   for (const char letter : text.substr(0, longest)) {
     result += static_cast<unsigned char>(letter) < 0x20 ? ' ' : letter;

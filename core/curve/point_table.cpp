@@ -121,7 +121,10 @@ class Reader {
   static std::string joined(const std::vector<std::string>& cells) {
     std::string text;
     for (const std::string& cell : cells) text += (text.empty() ? "" : ",") + cell;
-    return text.size() <= 80 ? text : text.substr(0, 77) + "...";
+    if (text.size() <= 80) return text;
+    std::size_t end = 77;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;  // no letter of UTF-8 is cut
+    return text.substr(0, end) + "...";
   }
 
   /// A column that was probably meant for that axis: "X", "x", "x (mm)".

@@ -1,5 +1,8 @@
 // Time of one assembly (value, gradient, rows, Jacobian, Hessian of the Lagrangian) by the kernel and by a loop written
-// by hand for the scene, per term, as a Markdown table.
+// by hand for the scene, per term, as a Markdown table. Both have to give the same numbers before anything is timed.
+//
+//   benchmark-assembly [PART OF A NAME] [--benchmark_…]   e.g. helical/nodes/80/all
+//   benchmark-assembly --compare                          only that they give the same numbers, at the smaller mesh
 
 #include <benchmark/benchmark.h>
 
@@ -290,7 +293,18 @@ void register_pairs(std::vector<Pair>& pairs, const std::string& only) {
 
 }  // namespace
 
+/// Every pair at the smaller mesh, without taking any time.
+int compare() {
+  for (const SceneName& scene : scenes) {
+    for (const char* kinematics : kinematics_names) {
+      for (const Part& part : parts) make_pair(scene, kinematics, mesh[0], part);
+    }
+  }
+  return 0;
+}
+
 int run(int argc, char** argv) {
+  if (argc == 2 && std::strcmp(argv[1], "--compare") == 0) return compare();
   // The user's flags come after these, and win.
   std::vector<std::string> defaults{"--benchmark_repetitions=9", "--benchmark_enable_random_interleaving=true",
                                     "--benchmark_min_time=0.01"};

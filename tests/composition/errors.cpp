@@ -90,6 +90,24 @@ TEST_CASE("the first error of syntax, in the same form") {
         "scene.toml:3:1: duplicate key 'solver'; expected each key once; remove one of the two");
 }
 
+TEST_CASE("a table whose name begins with a letter that needs quotes") {
+  Workbench bench;
+  CHECK(bench.errors("schema = 1\n[[@x]]\n").front() ==
+        "scene.toml:2:3: not TOML: expected bare key starting character or string delimiter, saw '@'; expected valid "
+        "TOML; mend this first: what stands behind it has not been read");
+  CHECK(bench.errors("schema = 1\n[é]\n").front().find("scene.toml:2:2: not TOML: ") == 0);
+}
+
+TEST_CASE("a long text is shown in part, and no letter of it is cut") {
+  Workbench bench;
+  std::string title, shown = "\"x";
+  for (int i = 0; i < 60; ++i) title += "é";
+  for (int i = 0; i < 39; ++i) shown += "é";
+  const std::vector<std::string> errors = bench.errors(scene_with("dimension = 2", "dimension = \"x" + title + "\""));
+  REQUIRE(!errors.empty());
+  CHECK(errors.front().find(shown + "…\"") != std::string::npos);
+}
+
 TEST_CASE("an empty file lacks everything that has no default") {
   Workbench bench;
   CHECK(bench.errors("") ==

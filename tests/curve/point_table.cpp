@@ -134,4 +134,13 @@ TEST_CASE("a file full of errors is cut off") {
   CHECK(errors.substr(errors.rfind('\n')) == "\nF: and 10 more errors");
 }
 
+TEST_CASE("a long list of columns is shown in part, and no letter of it is cut") {
+  std::string long_name;
+  for (int i = 0; i < 60; ++i) long_name += "é";
+  const std::string errors = errors_of("x_mm," + long_name + "\n", 2);
+  std::string shown = " among x_mm,";
+  for (int i = 0; i < 36; ++i) shown += "é";
+  CHECK(errors.find(shown + "...") != std::string::npos);
+}
+
 }  // namespace

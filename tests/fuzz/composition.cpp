@@ -1,0 +1,55 @@
+// Any text as a composition: it is loaded, or every reason why not is a sentence.
+
+#include <nlohmann/json.hpp>
+
+#include "core/composition/composition.hpp"
+#include "tests/composition/fake_registry.hpp"
+#include "tests/fuzz/scratch.hpp"
+
+namespace {
+
+using namespace bowstring;
+
+constexpr const char* base = R"(schema = 1
+[scene]
+dimension = 2
+[[vessel]]
+name = "v"
+geometry = { type = "sinusoid", chord = "150 mm", amplitude = "25 mm" }
+radius = "6 mm"
+)";
+
+void check(const CompositionOutcome& outcome, bool utf8) {
+  for (const InputError& error : outcome.errors) {
+    fuzz::require(!error.position.empty() && !error.found.empty(), "an error does not say where or what");
+    fuzz::require(!utf8 || fuzz::is_utf8(error.text()), "an error that cuts a letter");
+  }
+  const bool refused = !outcome.errors.empty() || !outcome.plugin_failure.ok();
+  fuzz::require(outcome.composition.has_value() != refused, "neither loaded nor refused, or both");
+  if (!outcome.composition) return;
+  const nlohmann::json resolved = nlohmann::json::parse(outcome.composition->resolved_json);
+  fuzz::require(resolved.is_object(), "the resolved composition is no JSON object");
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const bool prepared = [] {
+    fuzz::write_scratch("base.toml", base);
+    return true;
+  }();
+  (void)prepared;
+  static test::FakeRegistry registry;
+  const std::string& file = fuzz::scratch_file(data, size);
+  const std::string text(reinterpret_cast<const char*>(data), size);
+  check(load_composition({file, {}}, registry), fuzz::is_utf8(text));
+  composition_plugin_path(file);
+  // The first line as an override of a scene that is right.
+  const std::string line = text.substr(0, text.find('\n'));
+  const std::size_t equals = line.find('=');
+  if (equals != std::string::npos) {
+    const Override override{line.substr(0, equals), line.substr(equals + 1)};
+    check(load_composition({"base.toml", {override}}, registry), fuzz::is_utf8(line));
+  }
+  return 0;
+}
