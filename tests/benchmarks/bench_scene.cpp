@@ -49,8 +49,8 @@ bool composed(const Terms& terms, const std::string& label) {
   throw std::runtime_error("the benchmark knows no energy '" + label + "'");
 }
 
-/// Smooth random displacements of the vessel would need a spline; a few hundredths of an edge per node do as well, and
-/// keep every edge's direction near its own. The wire's nodes lie beside the vessel's.
+/// Every unknown a little off its start, and the wire's nodes beside the centerline, where contact rows have something
+/// to search. At every mesh edges keep their directions nearly.
 std::vector<double> state_near_start(const BenchScene& bench, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

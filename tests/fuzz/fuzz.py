@@ -12,7 +12,8 @@ from pathlib import Path
 
 SKIPPED = 77
 SECONDS = 300
-FLAGS = ["-std=c++20", "-O1", "-g", "-fno-omit-frame-pointer", "-fsanitize=fuzzer,address"]
+FLAGS = ["-std=c++20", "-O1", "-g", "-fno-omit-frame-pointer", "-fsanitize=fuzzer,address,undefined",
+         "-fno-sanitize-recover=undefined"]
 LIBRARIES = ["-ludunits2"]
 SOURCES = {
     "composition": ["core/composition/*.cpp", "core/interfaces/interfaces.cpp", "tests/composition/fake_registry.cpp",
