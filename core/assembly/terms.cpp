@@ -18,7 +18,7 @@ Status named(Status status, const std::string& what) {
 }  // namespace
 
 Status Assembly::sum_term(Span<const double> q, int term, bool modulus) {
-  if (Status status = update_places(q); !status.ok()) return status;
+  if (Status status = update_places(q, true); !status.ok()) return status;
   if (Status status = update_jacobians(); !status.ok()) return status;
   has_energy_ = false;  // the tables' stress is no longer that of the sum
   for (SiteTable& table : tables_) {
@@ -40,7 +40,7 @@ Status Assembly::term_gradient(Span<const double> q, int term, std::vector<doubl
   if (Status status = sum_term(q, term, false); !status.ok()) return status;
   out.assign(at(scene_.unknowns), 0.0);
   for (const SiteTable& table : tables_) {
-    if (table.declaration->site != Site::closure) table.add_gradient(table.stress, out.data());
+    if (table.pulls) table.add_gradient(table.stress, table.unknown, out.data());
   }
   return {};
 }
@@ -49,9 +49,9 @@ Status Assembly::term_hessian(Span<const double> q, int term, Span<double> value
   if (Status status = sum_term(q, term, true); !status.ok()) return status;
   std::fill(values.begin(), values.end(), 0.0);
   for (SiteTable& table : tables_) {
-    if (table.declaration->site == Site::closure) continue;
+    if (!table.pulls) continue;
     table.total_stress = table.stress;
-    Status status = table.update_curvature(curve_q(table.curve), curve_of(table).coordinates);
+    Status status = table.update_curvature(curve_q(table.curve), state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve_of(table).name + "'");
     table.add_hessian(1.0, values.data());
   }

@@ -43,7 +43,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string& file = fuzz::scratch_file(data, size);
   const std::string text(reinterpret_cast<const char*>(data), size);
   check(load_composition({file, {}}, registry), fuzz::is_utf8(text));
-  composition_plugin_path(file);
+  composition_plugin_path({file, {}});
   // The first line as an override of a scene that is right.
   const std::string line = text.substr(0, text.find('\n'));
   const std::size_t equals = line.find('=');
