@@ -15,7 +15,7 @@ namespace {
 constexpr double unjudged = std::numeric_limits<double>::quiet_NaN();
 constexpr double excursion = 0.05;     // of the body's radius: how far energies are followed
 constexpr double no_stiffness = 1e-9;  // of what the Hessian's diagonal alone would give
-constexpr double rounding = 1e-12;     // of an energy
+constexpr double least_force = 1e-10;  // N: less is rounding, far below what a certificate asks for
 constexpr double no_force = 1e-8;      // of what the gradient's entries would give if none cancelled
 constexpr double same = 1e-7;
 
@@ -102,7 +102,6 @@ class RigidSearch {
 
   struct Response {
     double stiffness = 0.0, force = 0.0;  ///< N/mm and N along a motion
-    double rounding = 0.0;                ///< N: what the energies' own rounding may leave of the force
   };
   Status response(const Body& body, bool loads, const Eigen::VectorXd& coefficients, Response& out) {
     const double t = excursion * body.radius();
@@ -112,7 +111,6 @@ class RigidSearch {
     if (Status status = energy(body, loads, coefficients, t, forth); !status.ok()) return status;
     out.stiffness = (forth - 2.0 * here + back) / (t * t);
     out.force = (forth - back) / (2.0 * t);
-    out.rounding = rounding * std::fabs(here) / t;
     return {};
   }
 
@@ -160,7 +158,7 @@ class RigidSearch {
     Response found;
     for (Eigen::Index k = 0; k < shifting.cols(); ++k) {
       if (!response(body, true, shifting.col(k), found).ok()) continue;
-      const double least = found.rounding + no_force * force_scale(body, shifting.col(k)) +
+      const double least = least_force + no_force * force_scale(body, shifting.col(k)) +
                            no_stiffness * t * stiffness_scale(body, shifting.col(k));
       if (std::fabs(found.force) > least) return true;
     }
