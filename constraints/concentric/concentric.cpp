@@ -176,10 +176,9 @@ class Concentric final : public Constraint {
 
   void set_window(const ConstraintScene& scene) {
     const double edge = vessel_.arc[vessel_.nodes - 1] / (vessel_.nodes - 1);
-    const auto segments = [&](double length) { return static_cast<int>(std::ceil(length / edge)); };
-    segments_ = std::max(scene.window_segments, segments(scene.window_length));
-    if (window_ > 0.0) segments_ = window_is_length_ ? segments(window_) : static_cast<int>(std::lround(window_));
-    segments_ = std::max(segments_, 1);
+    double segments = std::max<double>(scene.window_segments, std::ceil(scene.window_length / edge));
+    if (window_ > 0.0) segments = window_is_length_ ? std::ceil(window_ / edge) : std::round(window_);
+    segments_ = static_cast<int>(std::clamp<double>(segments, 1.0, vessel_.nodes));
   }
 
   void make_places(const ConstraintScene& scene) {

@@ -28,6 +28,7 @@ RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept {
     point.wire.extremal = extremum.interior;
     point.closest = extremum.closest;
     point.lesser_end = extremum.lesser_end;
+    std::copy_n(extremum.end_sigma, 2, point.end_sigma);
   } else {
     double x[3] = {};
     point.wire.position(dimension, x);
@@ -84,6 +85,7 @@ void refer_to(Row& row, const Wall& wall, const double* wire) noexcept {
   row.t = point.wire.t;
   row.interior = point.wire.extremal;
   row.sigma = point.closest.at.sigma();
+  for (int k = 0; k < 2; ++k) row.end_sigma[k] = row.extremal ? point.end_sigma[k] : row.sigma;
   row.stencil = contact::stencil(wall.centerline.interpolation, point.closest.at, wall.centerline.nodes);
   row.gap = point.gap;
   row.lesser_end = point.lesser_end;

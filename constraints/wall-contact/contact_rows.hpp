@@ -33,6 +33,7 @@ struct Row {
   contact::Window window;     ///< of σ
   contact::NodeRange covers;  ///< vessel nodes within it
   double sigma = 0.0;         ///< at the accepted state, and what follows
+  double end_sigma[2] = {};   ///< of the chord's two ends where t is searched for; otherwise σ twice
   contact::Stencil stencil;   ///< of the vessel there
   double offset[3] = {};      ///< x − q
   double tangent[3] = {};     ///< unit, of the vessel
@@ -47,6 +48,7 @@ struct RowPoint {
   contact::ClosestPoint closest;
   double gap = 0.0;         ///< ≤ 0 on the right side, mm
   double lesser_end = 0.0;  ///< gap at the node of a chord where it is smaller, mm
+  double end_sigma[2] = {};
 };
 
 /// `wire`: all its node positions. `window_edge` in the closest point where the row needs other vessel nodes.

@@ -38,6 +38,7 @@ constexpr ParameterDeclaration rows_key{
         "rows per wire segment, evenly spaced; \"auto\": as many as keep rows closer than 0.65 of the "
         "smallest clearance; without effect with segment-wise-contact, which finds the place itself",
     .lower = 1.0,
+    .upper = 1000.0,
     .choices = "auto"};
 constexpr ParameterDeclaration window_key{
     .key = "window",
@@ -110,6 +111,7 @@ class WallContact final : public Constraint {
       set_window(scene);
       const std::vector<double> sigma = first_places(scene);
       if (!outside_) check_width(sigma);
+      measure_clearance(sigma);
       make_rows(sigma);
       select();
       describe(out);
@@ -183,9 +185,10 @@ class WallContact final : public Constraint {
     const bool near_edge = std::any_of(active_.begin(), active_.end(), [&](std::size_t r) {
       const Row& row = rows_[r];
       if (!row.searches) return false;
-      const double margin = rebind_margin * 0.5 * (row.window.high - row.window.low);
-      const bool low = row.window.low > 0.0 && row.sigma < row.window.low + margin;
-      const bool high = row.window.high < vessel_.nodes - 1 && row.sigma > row.window.high - margin;
+      const double margin = rebind_margin * (segments_ + 0.5);
+      const auto [first, last] = std::minmax(row.end_sigma[0], row.end_sigma[1]);
+      const bool low = row.window.low > 0.0 && first < row.window.low + margin;
+      const bool high = row.window.high < vessel_.nodes - 1 && last > row.window.high - margin;
       return low || high;
     });
     if (near_edge) return true;
@@ -292,28 +295,29 @@ class WallContact final : public Constraint {
 
   void set_window(const ConstraintScene& scene) {
     const double edge = vessel_.arc[vessel_.nodes - 1] / (vessel_.nodes - 1);
-    const auto segments = [&](double length) { return static_cast<int>(std::ceil(length / edge)); };
-    if (window_ > 0.0) {
-      segments_ = window_is_length_ ? segments(window_) : static_cast<int>(std::lround(window_));
-    } else {
-      segments_ = std::max(scene.window_segments, segments(scene.window_length));
-    }
-    segments_ = std::max(segments_, 1);
+    double segments = std::max<double>(scene.window_segments, std::ceil(scene.window_length / edge));
+    if (window_ > 0.0) segments = window_is_length_ ? std::ceil(window_ / edge) : std::round(window_);
+    segments_ = static_cast<int>(std::clamp<double>(segments, 1.0, vessel_.nodes));
   }
 
   double longest_edge() const { return *std::max_element(wire_.edge_length, wire_.edge_length + wire_.nodes - 1); }
 
-  double smallest_clearance() const {
-    const double lumen = *std::min_element(radius_.begin(), radius_.end());
-    const double widest = *std::max_element(wire_radius_.begin(), wire_radius_.end());
-    return outside_ ? lumen + widest : lumen - widest;
+  /// Of the wire's nodes at the places that they are first bound to.
+  void measure_clearance(const std::vector<double>& sigma) {
+    smallest_clearance_ = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < sigma.size(); ++i) {
+      const contact::CurveCoordinate at = contact::coordinate(sigma[i], vessel_.nodes);
+      const auto segment = static_cast<std::size_t>(at.segment);
+      const double lumen = (1.0 - at.u) * radius_[segment] + at.u * radius_[segment + 1];
+      smallest_clearance_ = std::min(smallest_clearance_, outside_ ? lumen + wire_radius_[i] : lumen - wire_radius_[i]);
+    }
   }
 
   /// Rows per segment; 0: every segment finds the place itself.
   int stations() const {
     if (discretisation == Discretisation::segment_wise) return 0;
     if (rows_per_segment_ > 0.0) return static_cast<int>(rows_per_segment_);
-    return std::max(1, static_cast<int>(std::ceil(longest_edge() / (automatic_spacing * smallest_clearance()))));
+    return std::max(1, static_cast<int>(std::ceil(longest_edge() / (automatic_spacing * smallest_clearance_))));
   }
 
   /// Rows at every place that may carry one, in order along the wire, each segment's after its first node's.
@@ -349,6 +353,8 @@ class WallContact final : public Constraint {
     row.radius[0] = wire_radius_[first];
     row.radius[1] = nodes == 2 ? wire_radius_[first + 1] : row.radius[0];
     row.sigma = nodes == 1 ? sigma[first] : (1.0 - t) * sigma[first] + t * sigma[first + 1];
+    row.end_sigma[0] = row.extremal ? sigma[first] : row.sigma;
+    row.end_sigma[1] = row.extremal ? sigma[first + 1] : row.sigma;
     cover(row);
     refer_to(row, wall, wire_.start);
     cover(row);
@@ -366,7 +372,9 @@ class WallContact final : public Constraint {
 
   void cover(Row& row) const {
     if (row.searches) {
-      row.window = contact::window_around(row.sigma, segments_, vessel_.nodes);
+      const auto [first, last] = std::minmax(row.end_sigma[0], row.end_sigma[1]);
+      row.window = {contact::window_around(first, segments_, vessel_.nodes).low,
+                    contact::window_around(last, segments_, vessel_.nodes).high};
     } else {
       const int segment = contact::coordinate(row.sigma, vessel_.nodes).segment;
       row.window = {static_cast<double>(segment), segment + 1.0};
@@ -440,7 +448,7 @@ class WallContact final : public Constraint {
     const std::string pair = "contact of '" + std::string(wire_.name) + "' with '" + vessel_.name + "': ";
     const int per_segment = stations();
     const double spacing = per_segment > 0 ? longest_edge() / per_segment : 0.0;
-    const double clearance = smallest_clearance();
+    const double clearance = smallest_clearance_;
     if (spacing > clearance) {
       out.warnings.push_back(pair + "rows are up to " + number(spacing) +
                              " mm apart, farther than the smallest clearance (" + number(clearance) +
@@ -476,6 +484,7 @@ class WallContact final : public Constraint {
   CurveView wire_, vessel_;
   int dimension_ = 3;
   std::vector<double> radius_, wire_radius_;
+  double smallest_clearance_ = 0.0;
   std::vector<Row> rows_;
   std::vector<int> node_row_, chord_row_;     // per wire node and segment: its row, −1 where there is none
   std::vector<SegmentState> segments_state_;  // per segment; under segment-wise contact only

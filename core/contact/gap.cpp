@@ -430,8 +430,9 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
   };
   Sample low = at(0.0, start), high = at(1.0, start);
   const double lesser_end = std::min(sign * low.closest.gap, sign * high.closest.gap);
-  const auto answer = [lesser_end](const Sample& sample, bool interior) {
-    return ChordExtremum{sample.t, interior, lesser_end, sample.closest};
+  const double end_sigma[2] = {low.closest.at.sigma(), high.closest.at.sigma()};
+  const auto answer = [&](const Sample& sample, bool interior) {
+    return ChordExtremum{sample.t, interior, lesser_end, {end_sigma[0], end_sigma[1]}, sample.closest};
   };
   if (low.closest.location == Location::window_edge) return answer(low, false);
   if (high.closest.location == Location::window_edge) return answer(high, false);

@@ -88,8 +88,9 @@ struct WirePoint {
 /// Where h is extremal along a chord.
 struct ChordExtremum {
   double t = 0.0;
-  bool interior = false;    ///< h_t = 0 there; otherwise at an end
-  double lesser_end = 0.0;  ///< sign·h at the end where it is smaller, mm
+  bool interior = false;     ///< h_t = 0 there; otherwise at an end
+  double lesser_end = 0.0;   ///< sign·h at the end where it is smaller, mm
+  double end_sigma[2] = {};  ///< of the closest points of the chord's two ends
   ClosestPoint closest;
 };
 

@@ -131,6 +131,38 @@ TEST_CASE("a smooth distance says how far it lets the wire into the wall") {
                      "the smooth distance lets the wire into the wall by up to 0.001 mm"));
 }
 
+TEST_CASE("segment rows cover the wall from one end of a long segment to the other") {
+  SmallScene scene = with_contact("segment-wise-contact", "window = 1");
+  scene.geometry = R"({ type = "arc", radius = "60 mm", angle = "80 deg", nodes = 81 })";
+  scene.radius = "\"4 mm\"";
+  scene.wire_nodes = 9;
+  scene.wire_ends = R"(["clamped", "free"])";
+  std::string text = edited(scene.text(), "window = 20\n", "");
+  const auto session = session_of_text(text);
+  CHECK(solve(*session, nullptr).certificate.verdict == Verdict::converged);
+}
+
+TEST_CASE("a window beyond any vessel is the whole of it, and too many rows are refused") {
+  const auto places = [](const std::string& window) {
+    const auto session = session_of_text(edited(SmallScene{}.text(), "window = 20", "window = " + window));
+    return session->scene->constraints[0].rows.places.size();
+  };
+  CHECK(places("2147483647") == places("8"));
+  CHECK(places("\"1e12 mm\"") == places("8"));
+  CHECK(contains(refusal_of(with_contact("node-wise-contact", "rows-per-segment = 1e12").text()), "at most 1000"));
+}
+
+TEST_CASE("the clearance that rows are spaced by is that of the wire where it lies") {
+  SmallScene scene = with_contact("node-wise-contact", "rows-per-segment = \"auto\"");
+  scene.radius = R"({ table = [["0 mm", "5 mm"], ["60 mm", "1.5 mm"]] })";
+  scene.wire_ends = R"(["clamped", "free"])";  // a wire whose length slides has one radius
+  const std::string text =
+      edited(scene.text(), "radius = \"0.4 mm\"", R"(radius = { table = [["0 mm", "2 mm"], ["60 mm", "0.3 mm"]] })");
+  const auto session = session_of_text(text);
+  CHECK(session->scene->constraints[0].rows.rows > 6);
+  CHECK_FALSE(any_contains(session->scene->warnings, "farther than the smallest clearance"));
+}
+
 TEST_CASE("outside: a rod lies on a strip, which pushes it away") {
   for (const char* type : {"node-wise-contact", "segment-wise-contact"}) {
     CAPTURE(type);
