@@ -215,6 +215,19 @@ void ConstraintRows::add_hessian(int first, int end, const std::vector<SiteTable
   }
 }
 
+/// In a large matrix a row's entries are far apart: those of the next row, whose support is likely the same, are asked
+/// for while this one is added.
+void ConstraintRows::fetch_ahead(int row, const RowSupport& support, const double* out) const noexcept {
+  if (blocks[at(row)].block == 0 || !fits(row, support)) return;
+  const int* of_pair = base.data() + blocks[at(row)].first_base;
+  for (int p = 0; p < support.places(); ++p) {
+    for (int s = 0; s <= p; ++s) {
+      const int first = of_pair[packed_index(support.place(p), support.place(s))];
+      if (first != no_base) __builtin_prefetch(out + (first < 0 ? ~first : first), 1);
+    }
+  }
+}
+
 template <int fixed_block>
 void ConstraintRows::add_block_hessian(int row, const double* h, double* out) const noexcept {
   const Blocks& found = blocks[at(row)];
@@ -222,6 +235,7 @@ void ConstraintRows::add_block_hessian(int row, const double* h, double* out) co
   const RowSupport& support = hessian_support[at(row)];
   const int* of_pair = base.data() + found.first_base;
   const int* of_place = length.data() + found.first_length;
+  if (row + 1 < rows()) fetch_ahead(row + 1, support, out);
   for (int p = 0; p < support.places(); ++p) {
     const int place = support.place(p);
     const double* from[fixed_block == 0 ? max_block : fixed_block];  // the rows of h

@@ -71,6 +71,7 @@ struct ConstraintRows {
   int block_of(int row) const noexcept;
   bool locate_blocks(int row, const BlockLayout& layout, const HessianPattern& pattern);
   void add_row_hessian(int row, const double* h, const std::vector<SiteTable>& tables, Span<double> out) const noexcept;
+  void fetch_ahead(int row, const RowSupport& support, const double* out) const noexcept;
   template <int fixed_block>
   void add_block_hessian(int row, const double* h, double* out) const noexcept;
 };

@@ -26,8 +26,10 @@ class HandContact {
       row.point = wire_.coordinate + places[0].index * d;
       row.first_node = places[1].index;
       row.row = first_row + r;
-      const contact::Centerline wall = centerline(start.data());
-      row.sigma = contact::globally_closest(wall, start.data() + row.point, shape_).at.sigma();
+      // The wire starts at the vessel's nodes.
+      const contact::Window near = contact::window_around(places[0].index, 2, nodes_);
+      row.sigma = contact::closest(centerline(start.data()), start.data() + row.point, shape_, near, places[0].index)
+                      .at.sigma();
       row.window =
           declared_window(row.sigma, row.first_node, declared.place_begin[at(r) + 1] - declared.place_begin[at(r)] - 1);
       std::vector<int> unknown;
