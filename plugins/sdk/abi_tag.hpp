@@ -8,7 +8,7 @@
 namespace bowstring {
 
 /// What two binaries must share to exchange the objects of core/interfaces: NUL-terminated text such as
-/// "bowstring-1/gxx-abi-1017/libstdc++-cxx11/double".
+/// "bowstring-2/gxx-abi-1017/libstdc++-cxx11/double".
 struct AbiTag {
   char text[64];
 };
