@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/contact/binding.hpp"
-#include "core/contact/gap.hpp"
+#include "core/contact/row_window.hpp"
 #include "core/interfaces/constraint.hpp"
 #include "core/lie/s2.hpp"
 #include "plugins/sdk/plugin.hpp"
@@ -12,22 +12,11 @@ namespace bowstring {
 namespace {
 
 constexpr ParameterDeclaration schema[] = {
-    {.key = "centerline",
-     .type = ParameterType::choice,
-     .unit = "",
-     .default_text = "\"spline\"",
-     .description = "how the vessel runs between its nodes",
-     .choices = "spline|polyline"},
-    {.key = "window",
-     .type = ParameterType::scalar,
-     .unit = "|mm",
-     .default_text = "",
-     .description = "vessel segments (a number) or length (with a unit) that a row covers on each side of its place; "
-                    "default what the solver asks for",
-     .lower = 0.0,
-     .lower_exclusive = true},
+    contact::centerline_key("how the vessel runs between its nodes"),
+    contact::window_key(
+        "vessel segments (a number) or length (with a unit) that a row covers on each side of its place; "
+        "default what the solver asks for"),
 };
-constexpr int window_in_length = 1;
 constexpr double rebind_margin = 0.2;   // of the window's half width
 constexpr double largest_slant = 0.75;  // cosine of what a tangent may turn from its row's axes
 constexpr int max_steps = 60;
@@ -58,12 +47,7 @@ Vector3 vector(const double* p) { return {{p[0], p[1], p[2]}}; }
 class Concentric final : public Constraint {
  public:
   explicit Concentric(const ParameterSet& parameters)
-      : interpolation_(parameters.text("centerline") == "polyline" ? contact::Interpolation::polyline
-                                                                   : contact::Interpolation::spline) {
-    if (!parameters.has("window")) return;
-    window_ = parameters.scalar("window");
-    window_is_length_ = parameters.at("window").unit_alternative == window_in_length;
-  }
+      : interpolation_(contact::interpolation_of(parameters)), window_(parameters) {}
 
   Status declare(const ConstraintScene& scene, RowDeclaration& out) noexcept override {
     return guard([&] {
@@ -75,7 +59,7 @@ class Concentric final : public Constraint {
       dimension_ = scene.dimension;
       rows_each_ = dimension_ - 1;
       no_radius_.assign(static_cast<std::size_t>(vessel_.nodes), 1.0);
-      set_window(scene);
+      segments_ = window_.segments(scene);
       make_places(scene);
       describe(out);
       out.inside_lumen = fits(scene);
@@ -123,9 +107,8 @@ class Concentric final : public Constraint {
   bool rebind_due() const noexcept override {
     return std::any_of(places_.begin(), places_.end(), [&](const Place& place) {
       const double margin = rebind_margin * 0.5 * (place.window.high - place.window.low);
-      const bool low = place.window.low > 0.0 && place.sigma < place.window.low + margin;
-      const bool high = place.window.high < vessel_.nodes - 1 && place.sigma > place.window.high - margin;
-      return low || high || place.slant < largest_slant;
+      return place.slant < largest_slant ||
+             contact::near_edge(place.window, place.sigma, place.sigma, margin, vessel_.nodes);
     });
   }
 
@@ -174,19 +157,12 @@ class Concentric final : public Constraint {
     return *std::min_element(scene.radius[1], scene.radius[1] + scene.on[1].nodes) > widest;
   }
 
-  void set_window(const ConstraintScene& scene) {
-    const double edge = vessel_.arc[vessel_.nodes - 1] / (vessel_.nodes - 1);
-    double segments = std::max<double>(scene.window_segments, std::ceil(scene.window_length / edge));
-    if (window_ > 0.0) segments = window_is_length_ ? std::ceil(window_ / edge) : std::round(window_);
-    segments_ = static_cast<int>(std::clamp<double>(segments, 1.0, vessel_.nodes));
-  }
-
   void make_places(const ConstraintScene& scene) {
     const contact::Centerline centerline = centerline_at(vessel_.start);
     const std::vector<double> sigma = contact::first_places(scene, centerline);
     places_.clear();
     for (int i = 0; i < wire_.nodes; ++i) {
-      if (contact::position_held(wire_, i)) continue;
+      if (position_held(wire_, i)) continue;
       Place place;
       place.node = i;
       place.sigma = sigma[static_cast<std::size_t>(i)];
@@ -333,8 +309,7 @@ class Concentric final : public Constraint {
   }
 
   contact::Interpolation interpolation_;
-  double window_ = 0.0;
-  bool window_is_length_ = false;
+  contact::RowWindow window_;
   int segments_ = 2, dimension_ = 3, rows_each_ = 2;
   CurveView wire_, vessel_;
   std::vector<double> no_radius_;

@@ -6,17 +6,12 @@
 
 #include "constraints/wall-contact/contact_rows.hpp"
 #include "core/contact/binding.hpp"
+#include "core/contact/row_window.hpp"
 #include "plugins/sdk/plugin.hpp"
 
 namespace bowstring::wall_contact {
 namespace {
 
-constexpr ParameterDeclaration centerline_key{.key = "centerline",
-                                              .type = ParameterType::choice,
-                                              .unit = "",
-                                              .default_text = "\"spline\"",
-                                              .description = "how the wall runs between vessel nodes",
-                                              .choices = "spline|polyline"};
 constexpr ParameterDeclaration gap_key{.key = "gap",
                                        .type = ParameterType::choice,
                                        .unit = "",
@@ -40,19 +35,12 @@ constexpr ParameterDeclaration rows_key{
     .lower = 1.0,
     .upper = 1000.0,
     .choices = "auto"};
-constexpr ParameterDeclaration window_key{
-    .key = "window",
-    .type = ParameterType::scalar,
-    .unit = "|mm",
-    .default_text = "",
-    .description =
-        "vessel segments (a number) or length (with a unit) that a row covers on each side of its closest "
-        "point; default what the solver asks for; without effect with same-index-contact, which searches none",
-    .lower = 0.0,
-    .lower_exclusive = true};
-constexpr ParameterDeclaration schema[] = {centerline_key, gap_key, side_key, rows_key, window_key};
+constexpr ParameterDeclaration schema[] = {
+    contact::centerline_key("how the wall runs between vessel nodes"), gap_key, side_key, rows_key,
+    contact::window_key("vessel segments (a number) or length (with a unit) that a row covers on each side of its "
+                        "closest point; default "
+                        "what the solver asks for; without effect with same-index-contact, which searches none")};
 
-constexpr int window_in_length = 1;
 constexpr double rebind_margin = 0.2;       // of the window's half width
 constexpr double automatic_spacing = 0.65;  // of the smallest clearance
 constexpr double touching = 0.1;            // of the clearance: a node closer to its wall may be about to carry force
@@ -84,8 +72,8 @@ template <Discretisation discretisation>
 class WallContact final : public Constraint {
  public:
   explicit WallContact(const ParameterSet& parameters)
-      : interpolation_(parameters.text("centerline") == "polyline" ? contact::Interpolation::polyline
-                                                                   : contact::Interpolation::spline),
+      : interpolation_(contact::interpolation_of(parameters)),
+        window_(parameters),
         form_(gap_form_of(parameters.text("gap"))),
         outside_(parameters.text("side") == "outside") {
     const ParameterValue& rows = parameters.at("rows-per-segment");
@@ -94,9 +82,6 @@ class WallContact final : public Constraint {
       throw StatusError(Code::invalid_input, "'rows-per-segment' is " + number(rows_per_segment_) +
                                                  "; expected a whole number, or \"auto\"");
     }
-    if (!parameters.has("window")) return;
-    window_ = parameters.scalar("window");
-    window_is_length_ = parameters.at("window").unit_alternative == window_in_length;
   }
 
   Status declare(const ConstraintScene& scene, RowDeclaration& out) noexcept override {
@@ -108,9 +93,8 @@ class WallContact final : public Constraint {
       radius_.assign(scene.radius[1], scene.radius[1] + vessel_.nodes);
       wire_radius_.assign(static_cast<std::size_t>(wire_.nodes), 0.0);
       if (scene.radius[0] != nullptr) wire_radius_.assign(scene.radius[0], scene.radius[0] + wire_.nodes);
-      set_window(scene);
+      segments_ = window_.segments(scene);
       const std::vector<double> sigma = first_places(scene);
-      if (!outside_) check_width(sigma);
       measure_clearance(sigma);
       make_rows(sigma);
       select();
@@ -187,9 +171,7 @@ class WallContact final : public Constraint {
       if (!row.searches) return false;
       const double margin = rebind_margin * (segments_ + 0.5);
       const auto [first, last] = std::minmax(row.end_sigma[0], row.end_sigma[1]);
-      const bool low = row.window.low > 0.0 && first < row.window.low + margin;
-      const bool high = row.window.high < vessel_.nodes - 1 && last > row.window.high - margin;
-      return low || high;
+      return contact::near_edge(row.window, first, last, margin, vessel_.nodes);
     });
     if (near_edge) return true;
     for (int segment = 0; segment < static_cast<int>(segments_state_.size()); ++segment) {
@@ -271,47 +253,32 @@ class WallContact final : public Constraint {
     }
   }
 
-  /// The wire fits in everywhere, or there is no gap to speak of.
-  void check_width(const std::vector<double>& sigma) const {
-    double worst = 0.0, place = -1.0, radius = 0.0;
+  /// The smallest clearance of the wire's nodes at the places that they are first bound to. Inside, the wire fits in
+  /// everywhere, or there is no gap to speak of.
+  void measure_clearance(const std::vector<double>& sigma) {
+    smallest_clearance_ = std::numeric_limits<double>::infinity();
+    double place = 0.0, radius = 0.0;
     for (std::size_t i = 0; i < sigma.size(); ++i) {
       const contact::CurveCoordinate at = contact::coordinate(sigma[i], vessel_.nodes);
       const auto between = [&](const double* values) {
         return (1.0 - at.u) * values[at.segment] + at.u * values[at.segment + 1];
       };
-      const double excess = wire_radius_[i] - between(radius_.data());
-      if (excess < worst) continue;
-      worst = excess;
+      const double lumen = between(radius_.data());
+      const double clearance = outside_ ? lumen + wire_radius_[i] : lumen - wire_radius_[i];
+      if (clearance > smallest_clearance_) continue;
+      smallest_clearance_ = clearance;
       place = between(vessel_.arc);
       radius = wire_radius_[i];
     }
-    if (place < 0.0) return;
+    if (outside_ || smallest_clearance_ > 0.0) return;
     throw StatusError(Code::invalid_input,
                       "wire '" + std::string(wire_.name) + "' (radius " + number(radius) +
-                          " mm) is as wide as the lumen of '" + vessel_.name + "' or wider, by " + number(worst) +
-                          " mm at s = " + number(place) +
+                          " mm) is as wide as the lumen of '" + vessel_.name + "' or wider, by " +
+                          number(std::fabs(smallest_clearance_)) + " mm at s = " + number(place) +
                           " mm; reduce the wire's radius, or use type = \"concentric\", which has no clearance");
   }
 
-  void set_window(const ConstraintScene& scene) {
-    const double edge = vessel_.arc[vessel_.nodes - 1] / (vessel_.nodes - 1);
-    double segments = std::max<double>(scene.window_segments, std::ceil(scene.window_length / edge));
-    if (window_ > 0.0) segments = window_is_length_ ? std::ceil(window_ / edge) : std::round(window_);
-    segments_ = static_cast<int>(std::clamp<double>(segments, 1.0, vessel_.nodes));
-  }
-
   double longest_edge() const { return *std::max_element(wire_.edge_length, wire_.edge_length + wire_.nodes - 1); }
-
-  /// Of the wire's nodes at the places that they are first bound to.
-  void measure_clearance(const std::vector<double>& sigma) {
-    smallest_clearance_ = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < sigma.size(); ++i) {
-      const contact::CurveCoordinate at = contact::coordinate(sigma[i], vessel_.nodes);
-      const auto segment = static_cast<std::size_t>(at.segment);
-      const double lumen = (1.0 - at.u) * radius_[segment] + at.u * radius_[segment + 1];
-      smallest_clearance_ = std::min(smallest_clearance_, outside_ ? lumen + wire_radius_[i] : lumen - wire_radius_[i]);
-    }
-  }
 
   /// Rows per segment; 0: every segment finds the place itself.
   int stations() const {
@@ -328,11 +295,11 @@ class WallContact final : public Constraint {
     chord_row_.assign(static_cast<std::size_t>(wire_.nodes - 1), -1);
     segments_state_.clear();
     for (int i = 0; i < wire_.nodes; ++i) {
-      if (!contact::position_held(wire_, i)) {
+      if (!position_held(wire_, i)) {
         node_row_[static_cast<std::size_t>(i)] = static_cast<int>(rows_.size());
         add_row(i, 1, 0.0, sigma);
       }
-      if (i == wire_.nodes - 1 || (contact::position_held(wire_, i) && contact::position_held(wire_, i + 1))) continue;
+      if (i == wire_.nodes - 1 || (position_held(wire_, i) && position_held(wire_, i + 1))) continue;
       for (int k = 1; k < per_segment; ++k) add_row(i, 2, static_cast<double>(k) / per_segment, sigma);
       if (per_segment > 0) continue;
       chord_row_[static_cast<std::size_t>(i)] = static_cast<int>(rows_.size());
@@ -475,11 +442,10 @@ class WallContact final : public Constraint {
   }
 
   contact::Interpolation interpolation_;
+  contact::RowWindow window_;
   contact::GapForm form_;
   bool outside_;
   double rows_per_segment_ = 1.0;  // 0: as many as keep them close
-  double window_ = 0.0;
-  bool window_is_length_ = false;
   int segments_ = 2;
   CurveView wire_, vessel_;
   int dimension_ = 3;

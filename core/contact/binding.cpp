@@ -34,16 +34,4 @@ std::vector<double> first_places(const ConstraintScene& scene, const Centerline&
   return sigma;
 }
 
-bool position_held(const CurveView& curve, int node) noexcept {
-  for (int e = 0; e < 2; ++e) {
-    const EndCondition& end = curve.end[e];
-    const int first = e == 0 ? 0 : curve.nodes - 1;
-    const int second = e == 0 ? 1 : curve.nodes - 2;
-    const bool wholly =
-        std::all_of(end.position_held, end.position_held + curve.dimension, [](bool held) { return held; });
-    if (wholly && (node == first || (end.edge_held && node == second))) return true;
-  }
-  return false;
-}
-
 }  // namespace bowstring::contact

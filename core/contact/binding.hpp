@@ -11,7 +11,4 @@ namespace bowstring::contact {
 /// starts along that curve, otherwise the globally nearest place, monotone along it.
 std::vector<double> first_places(const ConstraintScene& scene, const Centerline& centerline);
 
-/// A node whose position is wholly held, so that no row on it could do anything.
-bool position_held(const CurveView& curve, int node) noexcept;
-
 }  // namespace bowstring::contact

@@ -36,13 +36,6 @@ bool CurveMesh::edge_held(int edge) const noexcept {
   return curve.rigid || (edge == 0 && curve.end[0].edge_held) || (edge == edges() - 1 && curve.end[1].edge_held);
 }
 
-bool CurveMesh::position_held(int node, int axis) const noexcept {
-  const int last = nodes() - 1;
-  return curve.rigid || (node == 0 && curve.end[0].position_held[axis]) ||
-         (node == last && curve.end[1].position_held[axis]) || (node <= 1 && curve.end[0].edge_held) ||
-         (node >= last - 1 && curve.end[1].edge_held);
-}
-
 double CurveMesh::edge_middle(int edge) const noexcept {
   const auto i = static_cast<std::size_t>(edge);
   return (0.5 * (node_arc[i] + node_arc[i + 1])).at(start_length());

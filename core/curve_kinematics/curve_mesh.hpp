@@ -47,7 +47,6 @@ struct CurveMesh {
 
   /// Both of the edge's nodes, its orientation and its length are held.
   bool edge_held(int edge) const noexcept;
-  bool position_held(int node, int axis) const noexcept;
   /// L at the start; 0 where no length depends on it.
   double start_length() const noexcept { return sliding() ? curve.start_length : 0.0; }
   double edge_middle(int edge) const noexcept;  ///< arc coordinate at the start, mm

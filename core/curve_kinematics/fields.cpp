@@ -15,8 +15,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-lie::Rotation about_first_axis(double angle) { return {std::cos(0.5 * angle), std::sin(0.5 * angle), 0.0, 0.0}; }
-
 /// An orientation with the given first axis, as near to `near` as it can be.
 void orient(Manifold manifold, const double* tangent, const double* near, double* out) {
   if (manifold == Manifold::circle) {
@@ -35,7 +33,7 @@ void turn_held(Manifold manifold, const EndCondition& end, double* held) {
     return;
   }
   const lie::Rotation turned = lie::exp(Vector3::load(end.turn)) * lie::Rotation::load(held);
-  (turned * about_first_axis(end.twist)).store(held);
+  (turned * lie::about_first_axis(end.twist)).store(held);
 }
 
 }  // namespace
@@ -63,7 +61,7 @@ FieldDeclaration position_field(const CurveMesh& mesh) {
   field.start.assign(mesh.curve.start, mesh.curve.start + mesh.nodes() * d);
   for (int i = 0; i < mesh.nodes(); ++i) {
     field.station.push_back(mesh.node_arc[at(i)].at(mesh.start_length()));
-    for (int k = 0; k < d; ++k) field.fixed.push_back(mesh.position_held(i, k) ? 1 : 0);
+    for (int k = 0; k < d; ++k) field.fixed.push_back(position_held(mesh.curve, i, k) ? 1 : 0);
   }
   return field;
 }
@@ -115,7 +113,7 @@ std::vector<double> start_orientations(const CurveMesh& mesh, Manifold manifold,
   if (manifold != Manifold::circle) {
     std::vector<double> out = transported_orientations(manifold, tangents, reference.data());
     for (int i = 0; turn != nullptr && i < mesh.edges(); ++i) {
-      (lie::Rotation::load(out.data() + 4 * i) * about_first_axis(turn[i])).store(out.data() + 4 * i);
+      (lie::Rotation::load(out.data() + 4 * i) * lie::about_first_axis(turn[i])).store(out.data() + 4 * i);
     }
     return out;
   }

@@ -45,4 +45,19 @@ struct CurveView {
   EndCondition end[2];                  ///< first end, last end
 };
 
+/// Whether an end holds this coordinate of a node. A held edge holds both of its nodes.
+inline bool position_held(const CurveView& curve, int node, int axis) noexcept {
+  const int last = curve.nodes - 1;
+  return curve.rigid || (node == 0 && curve.end[0].position_held[axis]) ||
+         (node == last && curve.end[1].position_held[axis]) || (node <= 1 && curve.end[0].edge_held) ||
+         (node >= last - 1 && curve.end[1].edge_held);
+}
+/// Wholly held: no row on that node could do anything.
+inline bool position_held(const CurveView& curve, int node) noexcept {
+  for (int axis = 0; axis < curve.dimension; ++axis) {
+    if (!position_held(curve, node, axis)) return false;
+  }
+  return true;
+}
+
 }  // namespace bowstring

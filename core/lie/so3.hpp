@@ -104,6 +104,11 @@ struct BasicRotation {
 
 using Rotation = BasicRotation<>;
 
+/// A turn about the first axis.
+inline Rotation about_first_axis(double angle) noexcept {
+  return {std::cos(0.5 * angle), std::sin(0.5 * angle), 0.0, 0.0};
+}
+
 /// The rotation of an orthogonal matrix with determinant 1; rounding in its entries is not amplified, because the
 /// largest quaternion component is found first (S. Shepperd, J. Guidance and Control 1 (1978) 223).
 inline Rotation from_matrix(const Matrix3& m) noexcept {

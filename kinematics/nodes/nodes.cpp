@@ -199,10 +199,7 @@ void Nodes::make_room() {
 /// A row between two nodes that are wholly held would only freeze L, unless L has nothing else to follow.
 bool Nodes::needs_spacing(int edge) const noexcept {
   if (mesh_.edge_held(edge)) return false;
-  bool held = true;
-  for (int k = 0; k < mesh_.dimension(); ++k) {
-    held = held && mesh_.position_held(edge, k) && mesh_.position_held(edge + 1, k);
-  }
+  const bool held = position_held(mesh_.curve, edge) && position_held(mesh_.curve, edge + 1);
   return !held || mesh_.sliding();
 }
 
@@ -453,9 +450,8 @@ Status Nodes::sample(Span<const double> q, Span<const double> edge_coordinate, C
     if (manifold_ == Manifold::rotation) {
       frames.resize(at(4 * mesh_.edges()));
       for (int i = 0; i < mesh_.edges(); ++i) {
-        const double half = 0.5 * q[at(angle_.coordinate_of(i))];
         const lie::Rotation follows = lie::transport(reference_frames_[at(i)], Vector3::load(tangents.data() + 3 * i));
-        (follows * lie::Rotation{std::cos(half), std::sin(half), 0.0, 0.0}).store(frames.data() + 4 * i);
+        (follows * lie::about_first_axis(q[at(angle_.coordinate_of(i))])).store(frames.data() + 4 * i);
       }
     } else {
       frames = frame_quaternions(manifold_, transported_orientations(manifold_, tangents, first_frame_.data()));

@@ -61,8 +61,7 @@ inline void set_orientation(const EdgeReference&, DirectionSide& side) noexcept 
 }
 /// The frame of State 1 after the least turn from its tangent a to the edge's t, then turned by the angle about t.
 inline void set_orientation(const EdgeReference& reference, FrameSide& side) noexcept {
-  const double half = 0.5 * reference.angle;
-  side.frame = lie::transport(*reference.frame, side.tangent) * lie::Rotation{std::cos(half), std::sin(half), 0.0, 0.0};
+  side.frame = lie::transport(*reference.frame, side.tangent) * lie::about_first_axis(reference.angle);
   const Vector3 a = reference.frame->first_axis();
   const double cosine = dot(a, side.tangent);
   const double scale = 1.0 / (side.length * (1.0 + cosine));

@@ -15,6 +15,7 @@
 
 #include "core/interfaces/solver.hpp"
 #include "plugins/sdk/plugin.hpp"
+#include "solvers/shared/backend.hpp"
 
 namespace bowstring {
 namespace {
@@ -25,26 +26,14 @@ constexpr double unbounded = 2e19;  // what Ipopt takes for infinity
 constexpr double first_barrier = 0.1;
 
 constexpr ParameterDeclaration schema[] = {
-    {.key = "tolerance",
-     .type = ParameterType::scalar,
-     .unit = "",
-     .default_text = "1e-8",
-     .description = "absolute target: stationarity in N, rows in mm, complementarity in N mm",
-     .lower = 0.0,
-     .lower_exclusive = true},
+    backend::tolerance_key,
     {.key = "max-iterations",
      .type = ParameterType::integer,
      .unit = "",
      .default_text = "500",
      .description = "over all epochs",
      .lower = 1.0},
-    {.key = "time-limit",
-     .type = ParameterType::scalar,
-     .unit = "s",
-     .default_text = "",
-     .description = "wall-clock seconds after which the best point is returned",
-     .lower = 0.0,
-     .lower_exclusive = true},
+    backend::time_limit_key,
     {.key = "hessian",
      .type = ParameterType::choice,
      .unit = "",
@@ -58,14 +47,7 @@ constexpr ParameterDeclaration schema[] = {
      .description = "the order that MUMPS eliminates in; \"pord\" is up to three times faster for a sliding wire with "
                     "kinematics nodes on fine meshes, and slower for frames",
      .choices = "automatic|amd|amf|pord|metis|qamd"},
-    {.key = "step-guard",
-     .type = ParameterType::scalar,
-     .unit = "",
-     .default_text = "0.5",
-     .description =
-         "share of its clearance that a wire node may move, relative to its wall, in one step; 0 switches the "
-         "guard off, and soft wires may then tunnel through the wall",
-     .lower = 0.0},
+    backend::step_guard_key,
 };
 
 struct Settings {
@@ -386,27 +368,16 @@ class IpoptSolver final : public Solver {
   explicit IpoptSolver(const ParameterSet& parameters) {
     settings_.tolerance = parameters.scalar("tolerance");
     settings_.max_iterations = static_cast<int>(parameters.integer("max-iterations"));
-    if (parameters.has("time-limit")) settings_.time_limit = parameters.scalar("time-limit");
+    settings_.time_limit = backend::time_limit(parameters);
     settings_.exact_hessian = parameters.text("hessian") == "exact";
     settings_.ordering = ordering_of(parameters.text("ordering"));
-    const double guard = parameters.scalar("step-guard");
-    settings_.guard = guard > 0.0 ? guard : std::numeric_limits<double>::infinity();
+    settings_.guard = backend::step_guard(parameters);
   }
 
-  SolverTraits traits() const noexcept override {
-    SolverTraits traits;
-    traits.window_segments = 2;
-    traits.window_length = 10.0;
-    return traits;
-  }
+  SolverTraits traits() const noexcept override { return backend::traits(); }
 
   Status can(const ProblemSummary& summary) const noexcept override {
-    if (summary.equalities <= summary.unknowns) return {};
-    return guard([&] {
-      throw StatusError(Code::unsupported, "Ipopt takes no problem with more equality rows (" +
-                                               std::to_string(summary.equalities) + ") than unknowns (" +
-                                               std::to_string(summary.unknowns) + ")");
-    });
+    return guard([&] { backend::check_equalities("Ipopt", summary); });
   }
 
   Status solve(Problem& problem, Span<const double> start, const SolverContext& context,
@@ -419,7 +390,7 @@ class IpoptSolver final : public Solver {
     const IpoptTurn turn;
     const auto begin = Clock::now();
     out.q.assign(start.begin(), start.end());
-    problem.set_guard(settings_.guard);
+    const backend::Guarded guarded(problem, settings_.guard);
     Multipliers multipliers;
     double barrier = first_barrier;
     for (bool warm = false;; warm = true) {
@@ -443,9 +414,8 @@ class IpoptSolver final : public Solver {
         continue;
       }
       conclude(*program, status, out);
-      break;
+      return;
     }
-    problem.set_guard(std::numeric_limits<double>::infinity());
   }
 
   static void conclude(const ChartProgram& program, Ipopt::ApplicationReturnStatus status, SolverResult& out) {

@@ -3,19 +3,14 @@
 #include <string>
 
 #include "plugins/sdk/plugin.hpp"
+#include "solvers/shared/backend.hpp"
 #include "solvers/nlopt/program.hpp"
 
 namespace bowstring::nlopt_solver {
 namespace {
 
 constexpr ParameterDeclaration schema[] = {
-    {.key = "tolerance",
-     .type = ParameterType::scalar,
-     .unit = "",
-     .default_text = "1e-8",
-     .description = "absolute target: stationarity in N, rows in mm, complementarity in N mm",
-     .lower = 0.0,
-     .lower_exclusive = true},
+    backend::tolerance_key,
     {.key = "max-iterations",
      .type = ParameterType::integer,
      .unit = "",
@@ -23,13 +18,7 @@ constexpr ParameterDeclaration schema[] = {
      .description =
          "over all epochs; default 1000 with slsqp, 20000 with mma and ccsaq, where every trial point counts",
      .lower = 1.0},
-    {.key = "time-limit",
-     .type = ParameterType::scalar,
-     .unit = "s",
-     .default_text = "",
-     .description = "wall-clock seconds after which the best point is returned",
-     .lower = 0.0,
-     .lower_exclusive = true},
+    backend::time_limit_key,
     {.key = "algorithm",
      .type = ParameterType::choice,
      .unit = "",
@@ -43,14 +32,7 @@ constexpr ParameterDeclaration schema[] = {
      .default_text = "300",
      .description = "a problem with more free unknowns is refused: matrices are dense here",
      .lower = 1.0},
-    {.key = "step-guard",
-     .type = ParameterType::scalar,
-     .unit = "",
-     .default_text = "0.5",
-     .description =
-         "share of its clearance that a wire node may move, relative to its wall, in one step; 0 switches the "
-         "guard off, and soft wires may then tunnel through the wall",
-     .lower = 0.0},
+    backend::step_guard_key,
 };
 
 constexpr int slsqp_iterations = 1000;
@@ -67,9 +49,8 @@ Settings settings_of(const ParameterSet& parameters) {
     settings.max_iterations = static_cast<int>(parameters.integer("max-iterations"));
   }
   settings.max_unknowns = static_cast<int>(parameters.integer("max-unknowns"));
-  if (parameters.has("time-limit")) settings.time_limit = parameters.scalar("time-limit");
-  const double guard = parameters.scalar("step-guard");
-  settings.guard = guard > 0.0 ? guard : std::numeric_limits<double>::infinity();
+  settings.time_limit = backend::time_limit(parameters);
+  settings.guard = backend::step_guard(parameters);
   return settings;
 }
 
@@ -117,30 +98,13 @@ Verdict verdict(const Program& program, nlopt::result result) {
   }
 }
 
-/// Takes the guard off a problem again, whatever ends the solve.
-class Guarded {
- public:
-  Guarded(Problem& problem, double fraction) : problem_(problem) { problem_.set_guard(fraction); }
-  ~Guarded() { problem_.set_guard(std::numeric_limits<double>::infinity()); }
-  Guarded(const Guarded&) = delete;
-  Guarded& operator=(const Guarded&) = delete;
-
- private:
-  Problem& problem_;
-};
-
 /// NLopt is re-entrant per object, but for the seed of its random numbers, which none of these algorithms draws:
 /// instances may solve at the same time.
 class NloptSolver final : public Solver {
  public:
   explicit NloptSolver(const ParameterSet& parameters) : settings_(settings_of(parameters)) {}
 
-  SolverTraits traits() const noexcept override {
-    SolverTraits traits;
-    traits.window_segments = 2;
-    traits.window_length = 10.0;
-    return traits;
-  }
+  SolverTraits traits() const noexcept override { return backend::traits(); }
 
   Status can(const ProblemSummary& summary) const noexcept override {
     return guard([&] {
@@ -153,11 +117,7 @@ class NloptSolver final : public Solver {
                 "solver, such as 'ipopt', a larger max-unknowns, fewer nodes, or kinematics with fewer unknowns, such "
                 "as 'nodes'");
       }
-      if (summary.equalities > summary.unknowns) {
-        throw StatusError(Code::unsupported, "NLopt takes no problem with more equality rows (" +
-                                                 std::to_string(summary.equalities) + ") than unknowns (" +
-                                                 std::to_string(summary.unknowns) + ")");
-      }
+      backend::check_equalities("NLopt", summary);
     });
   }
 
@@ -170,7 +130,7 @@ class NloptSolver final : public Solver {
   void run(Problem& problem, Span<const double> start, const SolverContext& context, SolverResult& out) const {
     Progress progress;
     progress.begin = Clock::now();
-    const Guarded guarded(problem, settings_.guard);
+    const backend::Guarded guarded(problem, settings_.guard);
     out.q.assign(start.begin(), start.end());
     if (Status status = problem.accept(out.q); !status.ok()) throw StatusError(std::move(status));
     for (;;) {

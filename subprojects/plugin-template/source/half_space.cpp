@@ -27,19 +27,6 @@ std::string millimetres(double value) {
   return text;
 }
 
-bool is_held(const CurveView& curve, int node) {
-  if (curve.rigid) return true;
-  for (int e = 0; e < 2; ++e) {
-    const EndCondition& end = curve.end[e];
-    const int last = e == 0 ? 0 : curve.nodes - 1;
-    const int before = e == 0 ? 1 : curve.nodes - 2;
-    if (end.edge_held && (node == last || node == before)) return true;
-    const bool wholly = std::all_of(end.position_held, end.position_held + curve.dimension, [](bool h) { return h; });
-    if (wholly && node == last) return true;
-  }
-  return false;
-}
-
 /// One row per node that can move: r = n·p + a − offset ≤ 0 with the unit normal n and the radius a. Its multiplier is
 /// the force, in N, with which the plane pushes the node along −n.
 class HalfSpace final : public Constraint {
@@ -124,7 +111,7 @@ class HalfSpace final : public Constraint {
     double deepest = 0.0;
     for (int i = 0; i < curve.nodes; ++i) {
       const double a = surface_ && radius != nullptr ? radius[i] : 0.0;
-      if (is_held(curve, i)) {
+      if (position_held(curve, i)) {
         deepest = std::max(deepest, depth(curve.start + i * dimension_, a));
       } else {
         nodes_.push_back({curve.index, i, a});
