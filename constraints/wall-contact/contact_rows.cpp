@@ -14,7 +14,7 @@ double sign(const Wall& wall) noexcept { return wall.outside ? -1.0 : 1.0; }
 
 }  // namespace
 
-RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept {
+RowPoint locate(const Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept {
   RowPoint point;
   const int dimension = wall.centerline.dimension;
   point.wire.nodes = row.nodes;
@@ -23,7 +23,7 @@ RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept {
   for (int k = 0; k < 2; ++k) point.wire.radius[k] = sign(wall) * row.radius[k];
   if (row.extremal) {
     const contact::ChordExtremum extremum =
-        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), row.window, row.sigma);
+        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma);
     point.wire.t = extremum.t;
     point.wire.extremal = extremum.interior;
     point.closest = extremum.closest;
@@ -33,7 +33,7 @@ RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept {
     double x[3] = {};
     point.wire.position(dimension, x);
     const contact::GapShape shape = point.wire.shape(wall.form);
-    point.closest = row.searches ? contact::closest(wall.centerline, x, shape, row.window, row.sigma)
+    point.closest = row.searches ? contact::closest(wall.centerline, x, shape, window, row.sigma)
                                  : contact::gap_at(wall.centerline, x, shape,
                                                    contact::coordinate(row.sigma, wall.centerline.nodes));
   }
@@ -76,8 +76,8 @@ void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion
   }
 }
 
-void refer_to(Row& row, const Wall& wall, const double* wire) noexcept {
-  const RowPoint point = locate(row, wall, wire);
+void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept {
+  const RowPoint point = locate(row, wall, wire, window);
   const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
   const int dimension = wall.centerline.dimension;
   double x[3] = {};

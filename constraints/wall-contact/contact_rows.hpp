@@ -51,8 +51,8 @@ struct RowPoint {
   double end_sigma[2] = {};
 };
 
-/// `wire`: all its node positions. `window_edge` in the closest point where the row needs other vessel nodes.
-RowPoint locate(const Row& row, const Wall& wall, const double* wire) noexcept;
+/// `wire`: all its node positions. `window_edge` in the closest point where that is not in the window.
+RowPoint locate(const Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept;
 
 /// h to second order at that point; its wire points into `wire` of `locate`.
 contact::GapExpansion expand(const Wall& wall, const RowPoint& point) noexcept;
@@ -68,7 +68,7 @@ void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion
                    bool all_places, double* out) noexcept;
 
 /// Makes the state the row's accepted one.
-void refer_to(Row& row, const Wall& wall, const double* wire) noexcept;
+void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept;
 
 /// How far the row's point has moved since then, relative to its wall point and across the vessel, as a fraction of the
 /// clearance. `vessel`: all its node positions.

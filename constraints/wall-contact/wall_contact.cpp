@@ -122,12 +122,14 @@ class WallContact final : public Constraint {
     for (std::size_t r = 0; r < count; ++r) {
       const Row& row = rows_[active_[first + r]];
       Found& found = found_[first + r];
-      if (evaluation.state == 0 || found.state != evaluation.state) {
-        found.point = locate(row, wall, wire);
+      const bool again = evaluation.beyond_window && found.point.closest.location == contact::Location::window_edge;
+      if (evaluation.state == 0 || found.state != evaluation.state || again) {
+        found.point = locate(row, wall, wire, evaluation.beyond_window ? reach_of(row) : row.window);
         found.state = evaluation.state;
         found.expanded = false;
       }
       if (found.point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
+      if (!evaluation.beyond_window && !covers(row, found.point)) return {Code::left_window, {}};
       if (!evaluation.residual.empty()) evaluation.residual[r] = found.point.gap;
       if (!derivatives) continue;
       if (!found.expanded) found.expansion = expand(wall, found.point);
@@ -149,7 +151,7 @@ class WallContact final : public Constraint {
   Status accept(const PlaceTables& at) noexcept override {
     const Wall wall = wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
-    for (Row& row : rows_) refer_to(row, wall, wire);
+    for (Row& row : rows_) refer_to(row, wall, wire, reach_of(row));
     forget();
     return {};
   }
@@ -201,7 +203,7 @@ class WallContact final : public Constraint {
       out.clear();
       for (const std::size_t r : active_) {
         const Row& row = rows_[r];
-        const RowPoint point = locate(row, wall, wire);
+        const RowPoint point = locate(row, wall, wire, reach_of(row));
         const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
         double x[3] = {};
         point.wire.position(dimension_, x);
@@ -233,6 +235,18 @@ class WallContact final : public Constraint {
   Wall wall_at(const PlaceTables& at) const noexcept { return wall_of(at.table(vessel_.index, Site::node)); }
   Wall wall_of(const double* points) const noexcept {
     return {{interpolation_, dimension_, vessel_.nodes, points, radius_.data()}, form_, outside_};
+  }
+
+  /// Where a row may find its place: on a spline its search descends from the accepted place and cannot take a shortcut
+  /// to another limb; on a polyline it takes the lowest minimum of all that it sees.
+  contact::Window reach_of(const Row& row) const noexcept {
+    const bool descends = row.searches && interpolation_ == contact::Interpolation::spline;
+    return descends ? contact::Window{0.0, vessel_.nodes - 1.0} : row.window;
+  }
+
+  static bool covers(const Row& row, const RowPoint& point) noexcept {
+    const double sigma = point.closest.at.sigma();
+    return sigma >= row.window.low && sigma <= row.window.high;
   }
 
   void check(const ConstraintScene& scene) const {
@@ -323,7 +337,7 @@ class WallContact final : public Constraint {
     row.end_sigma[0] = row.extremal ? sigma[first] : row.sigma;
     row.end_sigma[1] = row.extremal ? sigma[first + 1] : row.sigma;
     cover(row);
-    refer_to(row, wall, wire_.start);
+    refer_to(row, wall, wire_.start, row.window);
     cover(row);
     rows_.push_back(row);
   }

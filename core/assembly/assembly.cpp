@@ -140,12 +140,13 @@ Status Assembly::check_guard() {
   guard_status_ = {};
   if (!std::isfinite(guard_)) return guard_status_;
   if (Status status = update_idle_places(); !status.ok()) return guard_status_ = std::move(status);
-  for (std::size_t c = 0; c < scene_.constraints.size(); ++c) {
-    const Travel travel = scene_.constraints[c].constraint->travel(*this);
-    if (travel.fraction_of_clearance > guard_) {
-      guard_status_.code = Code::refused;  // without text: this answer comes in the hot path
-      return guard_status_;
-    }
+  travelled_ = 0.0;
+  for (const ConstraintUse& use : scene_.constraints) {
+    travelled_ = std::max(travelled_, use.constraint->travel(*this).fraction_of_clearance);
+  }
+  if (travelled_ > guard_) {
+    guard_status_.code = Code::refused;  // without text: this answer comes in the hot path
+    return guard_status_;
   }
   if (std::any_of(tables_.begin(), tables_.end(), [&](const SiteTable& table) { return folds(table); })) {
     guard_status_.code = Code::refused;
@@ -171,22 +172,25 @@ bool Assembly::folds(const SiteTable& table) const noexcept {
   return false;
 }
 
-Status Assembly::update_rows(bool jacobian) {
+Status Assembly::update_rows(bool jacobian, bool beyond_window) {
   if (!epoch_failure_.ok()) return epoch_failure_;
-  if (has_row_jacobians_ || (has_rows_ && !jacobian)) return row_status_;
+  beyond_window = beyond_window && !jacobian;
+  if (has_row_jacobians_ && !(beyond_window && row_status_.code == Code::left_window)) return row_status_;
+  if (has_rows_ && !jacobian && beyond_window == rows_beyond_window_) return row_status_;
+  rows_beyond_window_ = beyond_window;
   row_status_ = {};
   double* out = row_.data();
   for (const SiteTable& table : tables_) {
     if (table.declaration->site == Site::closure) out = std::copy(table.y.begin(), table.y.end(), out);
   }
   for (std::size_t c = 0; c < constraints_.size() && row_status_.ok(); ++c)
-    row_status_ = update_constraint(c, jacobian);
+    row_status_ = update_constraint(c, jacobian, beyond_window);
   has_rows_ = true;
   has_row_jacobians_ = jacobian;
   return row_status_;
 }
 
-Status Assembly::update_constraint(std::size_t index, bool jacobian) {
+Status Assembly::update_constraint(std::size_t index, bool jacobian, bool beyond_window) {
   const ConstraintUse& use = scene_.constraints[index];
   ConstraintRows& rows = constraints_[index];
   RowEvaluation evaluation;
@@ -194,6 +198,7 @@ Status Assembly::update_constraint(std::size_t index, bool jacobian) {
   evaluation.residual = {row_.data() + rows.first_row, at(rows.rows())};
   if (jacobian) evaluation.jacobian = rows.jacobian;
   evaluation.state = state_;
+  evaluation.beyond_window = beyond_window;
   std::copy(rows.all_places.begin(), rows.all_places.end(), rows.jacobian_support.begin());
   if (jacobian) evaluation.support = rows.jacobian_support;
   Status status = use.constraint->evaluate(evaluation);
@@ -230,7 +235,7 @@ Status Assembly::evaluate(Span<const double> q, const ProblemEvaluation& evaluat
   if (Status status = check_guard(); !status.ok()) return status;
   const bool wants_rows = !evaluation.rows.empty() || !evaluation.jacobian.empty();
   // A row that left its window makes the whole trial inadmissible, whatever was asked for.
-  if (Status status = update_rows(!evaluation.jacobian.empty()); !status.ok()) return status;
+  if (Status status = update_rows(!evaluation.jacobian.empty(), evaluation.beyond_window); !status.ok()) return status;
   if (wants_rows && !evaluation.rows.empty()) std::copy(row_.begin(), row_.end(), evaluation.rows.begin());
 
   if (evaluation.energy != nullptr || !evaluation.gradient.empty()) {
@@ -377,6 +382,21 @@ Status Assembly::accept(Span<const double> q) noexcept {
   has_rows_ = has_row_jacobians_ = guard_checked_ = false;
   state_ = new_state();
   return {};
+}
+
+double Assembly::rounding_floor() const noexcept {
+  double floor = 0.0;
+  for (const EnergyUse& use : scene_.energies) {
+    double stiffest = 0.0;
+    for (const LawUse& law : use.laws) {
+      if (law.description.site != Site::station) continue;
+      for (const std::vector<double>& parameter : law.parameters) {
+        for (const double value : parameter) stiffest = std::max(stiffest, value);
+      }
+    }
+    if (stiffest > 0.0) floor = std::max(floor, scene_.curves[at(use.curve)]->kinematics->rounding_floor(stiffest));
+  }
+  return floor;
 }
 
 bool Assembly::epoch_due() const noexcept {

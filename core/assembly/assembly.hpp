@@ -52,6 +52,9 @@ class Assembly final : public Problem, public PlaceTables {
   SparsityPattern jacobian_pattern() const noexcept override { return jacobian_pattern_.view(); }
   SparsityPattern hessian_pattern() const noexcept override { return hessian_pattern_.view(); }
   Span<const int> order() const noexcept override { return order_; }
+  int border() const noexcept override { return border_; }
+  Span<const LocalRows> local_rows() const noexcept override { return local_rows_; }
+  Span<const int> local_unknowns() const noexcept override { return local_unknowns_; }
   Span<const double> stationarity_scale() const noexcept override { return scale_; }
   Status evaluate(Span<const double> q, const ProblemEvaluation& evaluation) noexcept override;
   Status lagrangian_hessian(Span<const double> q, double energy_factor, Span<const double> multipliers,
@@ -60,6 +63,8 @@ class Assembly final : public Problem, public PlaceTables {
   void retract(Span<const double> q, Span<const double> delta, Span<double> out) const noexcept override;
   Status accept(Span<const double> q) noexcept override;
   void set_guard(double fraction_of_clearance) noexcept override { guard_ = fraction_of_clearance; }
+  double travelled() const noexcept override { return travelled_; }
+  double rounding_floor() const noexcept override;
   bool epoch_due() const noexcept override;
   Status new_epoch() noexcept override;
   int epochs() const noexcept override { return epochs_; }
@@ -108,7 +113,10 @@ class Assembly final : public Problem, public PlaceTables {
   void make_patterns();
   /// A row of a closure site: its entries begin at `first` of the table's Jacobian and stand at `position`.
   void note_closure_row(int table, int first, const int* position);
+  void find_local_rows();
   void make_order();
+  /// Per free unknown: where along a vessel it stands, 0…1.
+  std::vector<double> places_along() const;
   void make_scales();
   ConstraintRows make_constraint_rows(const ConstraintUse& use, int first_row);
 
@@ -120,8 +128,8 @@ class Assembly final : public Problem, public PlaceTables {
   Status update_jacobians();
   Status check_guard();
   bool folds(const SiteTable& table) const noexcept;
-  Status update_rows(bool jacobian);
-  Status update_constraint(std::size_t index, bool jacobian);
+  Status update_rows(bool jacobian, bool beyond_window = false);
+  Status update_constraint(std::size_t index, bool jacobian, bool beyond_window);
   /// values += Σ multiplier ∇²r of the constraints.
   Status add_row_hessians(Span<const double> multipliers, Span<double> values);
   /// Brings every place's stress, and with `modulus` its modulus, to those of one energy alone.
@@ -155,6 +163,10 @@ class Assembly final : public Problem, public PlaceTables {
   std::vector<Run> closure_runs_;     // longest ones
   std::vector<char> closure_in_run_;  // per row
   std::vector<int> order_;
+  int border_ = 0;
+  std::vector<char> whole_curve_;  // per free unknown: read by every closure place of its curve
+  std::vector<LocalRows> local_rows_;
+  std::vector<int> local_unknowns_;
   HessianPattern hessian_pattern_;
   JacobianPattern jacobian_pattern_;
   ProblemSummary summary_;
@@ -167,8 +179,10 @@ class Assembly final : public Problem, public PlaceTables {
   std::uint64_t state_ = 0;  // of SiteEvaluation and RowEvaluation: new with q_, with what is accepted and bound
   bool has_places_ = false, has_idle_places_ = false, has_energy_ = false, has_jacobians_ = false, has_rows_ = false,
        has_row_jacobians_ = false;
+  bool rows_beyond_window_ = false;  // row_status_ is that of a search beyond the windows
   Status guard_status_, row_status_;
   bool guard_checked_ = false;
+  double travelled_ = 0.0;
   double energy_ = 0.0;
   std::vector<double> term_energy_, row_;
 };

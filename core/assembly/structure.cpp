@@ -263,6 +263,7 @@ void Assembly::make_patterns() {
     }
   }
   for (ConstraintRows& rows : constraints_) rows.locate(blocks_, hessian_pattern_, jacobian_pattern_);
+  find_local_rows();
   make_order();
 }
 
@@ -282,26 +283,119 @@ void Assembly::note_closure_row(int table, int first, const int* position) {
   closure_runs_.push_back({table, first, position[0], width});
 }
 
+void Assembly::find_local_rows() {
+  std::vector<int> places(at(free_count_), 0);  // closure places, and constraints' equality rows, that read an unknown
+  whole_curve_.assign(at(free_count_), 0);
+  local_rows_.clear();
+  local_unknowns_.clear();
+  for (const SiteTable& table : tables_) {
+    if (table.declaration->site != Site::closure) continue;
+    std::vector<int> of_table(at(free_count_), 0);
+    for (const int u : table.free_unknown) {
+      if (u >= 0) ++of_table[at(u)], ++places[at(u)];
+    }
+    constexpr int few = 2;  // edges that meet at a node
+    for (int u = 0; u < free_count_; ++u)
+      whole_curve_[at(u)] |= of_table[at(u)] > few && of_table[at(u)] == table.count();
+  }
+  for (const ConstraintRows& rows : constraints_) {
+    for (int r = 0; r < rows.rows(); ++r) {
+      if (row_lower_[at(rows.first_row + r)] != row_upper_[at(rows.first_row + r)]) continue;
+      for (int k = rows.unknown_begin[at(r)]; k < rows.unknown_begin[at(r) + 1]; ++k) {
+        if (rows.unknown[at(k)] >= 0) ++places[at(rows.unknown[at(k)])];
+      }
+    }
+  }
+  std::vector<char> is_position(at(free_count_), 0);
+  for (const FieldEntry& entry : entries_) {
+    if (entry.block < 0 || entry.manifold != Manifold::vector) continue;
+    for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) is_position[at(u)] = 1;
+  }
+  int row = 0;
+  for (const SiteTable& table : tables_) {
+    if (table.declaration->site != Site::closure) continue;
+    for (int i = 0; i < table.count(); ++i, row += table.values()) {
+      LocalRows local{row, table.values(), static_cast<int>(local_unknowns_.size()), 0};
+      for (int k = 0; k < table.width(); ++k) {
+        const int u = table.free_unknown[at(i * table.width() + k)];
+        if (u < 0 || places[at(u)] != 1 || is_position[at(u)] != 0) continue;
+        local_unknowns_.push_back(u);
+        ++local.locals;
+      }
+      if (local.locals > 0) local_rows_.push_back(local);
+    }
+  }
+}
+
+std::vector<double> Assembly::places_along() const {
+  std::vector<double> place(at(free_count_), 0.0);
+  // Of a curve whose rows search places along another one: (its own arc fraction, that of the other curve).
+  std::vector<std::vector<std::pair<double, double>>> seen(scene_.curves.size());
+  const auto node_fraction = [&](const ConstraintRows::Read& read) {
+    const CurveView& view = curve_of(tables_[at(read.table)]).view;
+    return static_cast<double>(read.index) / (view.nodes - 1);
+  };
+  for (const ConstraintRows& rows : constraints_) {
+    for (int r = 0; r < rows.rows(); ++r) {
+      const int first = rows.read_begin[at(r)], end = rows.read_begin[at(r) + 1];
+      if (first == end) continue;
+      const int own = tables_[at(rows.reads[at(first)].table)].curve;
+      double mine = 0.0, other = 0.0;
+      int mine_count = 0, other_count = 0;
+      for (int k = first; k < end; ++k) {
+        const bool is_own = tables_[at(rows.reads[at(k)].table)].curve == own;
+        (is_own ? mine : other) += node_fraction(rows.reads[at(k)]);
+        ++(is_own ? mine_count : other_count);
+      }
+      if (other_count > 0) seen[at(own)].emplace_back(mine / mine_count, other / other_count);
+    }
+  }
+  for (auto& pairs : seen) std::sort(pairs.begin(), pairs.end());
+  std::size_t index = 0;
+  for (const auto& curve : scene_.curves) {
+    const auto& pairs = seen[at(curve->view.index)];
+    for (const FieldDeclaration& field : curve->declaration.fields) {
+      for (int i = 0; i < field.count; ++i, ++index) {
+        const FieldEntry& entry = entries_[index];
+        if (entry.block < 0) continue;
+        double along = entry.arc_fraction;
+        if (!pairs.empty()) {
+          const auto next = std::lower_bound(pairs.begin(), pairs.end(), std::pair<double, double>{along, -infinity});
+          if (next == pairs.begin()) {
+            along += next->second - next->first;
+          } else if (next == pairs.end()) {
+            along += pairs.back().second - pairs.back().first;
+          } else {
+            const auto before = next - 1;
+            const double width = next->first - before->first;
+            const double t = width > 0.0 ? (along - before->first) / width : 0.0;
+            along = before->second + t * (next->second - before->second);
+          }
+        }
+        for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) place[at(u)] = along;
+      }
+    }
+  }
+  return place;
+}
+
 void Assembly::make_order() {
   const int n = free_count_;
   const int m = rows();
-  std::vector<double> key(at(n + m), 0.0);
-  for (const FieldEntry& entry : entries_) {
-    if (entry.block < 0) continue;
-    // A curve's length reads the whole curve: it comes last.
-    const double place = entry.manifold == Manifold::real && blocks_.size(entry.block) == 1 && entry.arc_fraction > 1.5
-                             ? infinity
-                             : entry.arc_fraction;
-    for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) key[at(u)] = place;
+  std::vector<double> key = places_along();
+  key.resize(at(n + m), -infinity);
+  border_ = 0;
+  for (int u = 0; u < n; ++u) {
+    if (whole_curve_[at(u)] == 0) continue;
+    key[at(u)] = infinity;
+    ++border_;
   }
   const SparsityPattern pattern = jacobian_pattern_.view();
   for (int r = 0; r < m; ++r) {
-    double last = 0.0;
     for (int k = pattern.begin[at(r)]; k < pattern.begin[at(r) + 1]; ++k) {
       const double place = key[at(pattern.inner[at(k)])];
-      if (place < infinity) last = std::max(last, place);
+      if (place < infinity) key[at(n + r)] = std::max(key[at(n + r)], place);
     }
-    key[at(n + r)] = last;
   }
   order_.resize(at(n + m));
   std::iota(order_.begin(), order_.end(), 0);

@@ -152,21 +152,6 @@ void judge_crossings(const Assembly& assembly, Certificate& out) {
   }
 }
 
-void rounding_floor(const Assembly& assembly, Certificate& out) {
-  const Scene& scene = assembly.scene();
-  for (const EnergyUse& use : scene.energies) {
-    const Curve& curve = *scene.curves[at(use.curve)];
-    double stiffest = 0.0;
-    for (const LawUse& law : use.laws) {
-      if (law.description.site != Site::station) continue;
-      for (const std::vector<double>& parameter : law.parameters) {
-        for (const double value : parameter) stiffest = std::max(stiffest, value);
-      }
-    }
-    if (stiffest > 0.0) out.rounding_floor = std::max(out.rounding_floor, curve.kinematics->rounding_floor(stiffest));
-  }
-}
-
 std::string misses(const Certificate& c, const CertificateTable& t) {
   std::string text;
   const auto add = [&](bool missed, const char* what, double value, double threshold, const char* unit) {
@@ -255,7 +240,7 @@ Status certify(Assembly& assembly, Span<const double> q, Span<const double> mult
   judge_rows(assembly, residual, multipliers, out);
   judge_folds(assembly, thresholds.minimum_stretch, out);
   judge_crossings(assembly, out);
-  rounding_floor(assembly, out);
+  out.rounding_floor = assembly.rounding_floor();
   conclude(thresholds, claim, claim_reason, out);
   return {};
 }

@@ -73,6 +73,8 @@ struct RowEvaluation {
   /// accepted or bound in between: what was found then may serve again. No two states of a process share one. 0:
   /// unknown.
   std::uint64_t state = 0;
+  /// Only where residuals alone are asked for: a row may look for its place outside of what it covers.
+  bool beyond_window = false;
 };
 
 /// The largest motion of a row's point relative to its wall, transverse to it, since the last `accept`.
@@ -99,7 +101,8 @@ class Constraint {
   virtual ~Constraint() = default;
   virtual Status declare(const ConstraintScene& scene, RowDeclaration& out) noexcept = 0;
   virtual Status evaluate(const RowEvaluation& evaluation) const noexcept = 0;
-  /// `at` becomes the accepted point, from which the next `travel` and closest-point searches start.
+  /// `at` becomes the accepted point, from which the next `travel` and closest-point searches start. It may have been
+  /// found `beyond_window`; then `rebind_due` says so.
   virtual Status accept(const PlaceTables& at) noexcept {
     (void)at;
     return {};

@@ -33,8 +33,18 @@ struct ProblemSummary {
   std::vector<RowGroup> row_groups;
 };
 
+/// The equality rows of one place (an edge's closure) and the unknowns that no other equality row reads (that edge's
+/// direction and length): these can be eliminated where they stand, before anything else.
+struct LocalRows {
+  int first_row = 0, rows = 0;
+  int first_local = 0, locals = 0;  ///< into Problem::local_unknowns
+};
+
 /// Outputs are caller-owned and left alone when null or empty.
 struct ProblemEvaluation {
+  /// Rows may find their places (closest points) outside of what they cover, as a trial of a step does that is followed
+  /// by a new epoch. Without effect where a Jacobian is asked for.
+  bool beyond_window = false;
   double* energy = nullptr;
   Span<double> gradient;  ///< unknowns: of δ ↦ E(q · Exp δ) at 0, or of x ↦ E on a chart
   Span<double> rows;      ///< rows
@@ -77,6 +87,10 @@ class Problem {
   virtual SparsityPattern hessian_pattern() const noexcept = 0;
   /// Unknowns 0…n−1 and rows n…n+m−1 in an order along the curves, each row after the unknowns it reads.
   virtual Span<const int> order() const noexcept = 0;
+  /// The last so many of that order read whole curves (a sliding wire's length): a solver does well to border them.
+  virtual int border() const noexcept { return 0; }
+  virtual Span<const LocalRows> local_rows() const noexcept { return {}; }
+  virtual Span<const int> local_unknowns() const noexcept { return {}; }
   /// Length (mm) that turns a tangent number's gradient into a force: 1 for translations, the mean adjacent edge
   /// length for rotations. n entries.
   virtual Span<const double> stationarity_scale() const noexcept = 0;
@@ -93,6 +107,11 @@ class Problem {
   /// an edge has shortened to less than half, or where a station has turned by more than 45°.
   virtual Status accept(Span<const double> q) noexcept = 0;
   virtual void set_guard(double fraction_of_clearance) noexcept = 0;  ///< infinity: no guard
+  /// How far, in shares of its clearance, a wire node had moved at the last point that was evaluated under a guard: how
+  /// much shorter a step has to be that was refused. 0: unknown.
+  virtual double travelled() const noexcept { return 0.0; }
+  /// N: what the formulation's own rounding leaves of the stationarity, so that no smaller one can be asked for.
+  virtual double rounding_floor() const noexcept { return 0.0; }
   virtual bool epoch_due() const noexcept = 0;
   /// Binds rows anew at the accepted point: patterns and orders change. Row count and meaning stay.
   virtual Status new_epoch() noexcept = 0;

@@ -1,0 +1,73 @@
+#include "plugins/sdk/plugin.hpp"
+#include "solvers/newton/barrier_method.hpp"
+#include "solvers/shared/backend.hpp"
+
+namespace bowstring {
+namespace {
+
+constexpr ParameterDeclaration schema[] = {
+    backend::tolerance_key,
+    {.key = "max-iterations",
+     .type = ParameterType::integer,
+     .unit = "",
+     .default_text = "300",
+     .description = "over all epochs",
+     .lower = 1.0},
+    backend::time_limit_key,
+    backend::step_guard_key,
+};
+
+class InteriorPoint final : public Solver {
+ public:
+  explicit InteriorPoint(const ParameterSet& parameters) {
+    limits_.tolerance = parameters.scalar("tolerance");
+    limits_.max_iterations = static_cast<int>(parameters.integer("max-iterations"));
+    limits_.time_limit = backend::time_limit(parameters);
+    guard_ = backend::step_guard(parameters);
+  }
+
+  SolverTraits traits() const noexcept override {
+    SolverTraits traits;
+    traits.window_segments = 2;
+    traits.window_length = 0.0;
+    return traits;
+  }
+
+  Status can(const ProblemSummary& summary) const noexcept override {
+    return guard([&] { backend::check_equalities("interior-point", summary); });
+  }
+
+  Status solve(Problem& problem, Span<const double> start, const SolverContext& context,
+               SolverResult& out) noexcept override {
+    return guard([&] {
+      const backend::Guarded guarded(problem, guard_);
+      newton::Point point(problem, out);
+      point.q.assign(start.begin(), start.end());
+      newton::Progress progress(limits_, context, out);
+      newton::BarrierSettings settings;
+      std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
+      if (!multipliers.empty()) {
+        settings.warm = true;
+        settings.first_barrier = 1e-4;
+      }
+      newton::BarrierMethod method(point, progress, settings);
+      const newton::Ending ending = method.run(multipliers);
+      out.q = point.q;
+      out.multipliers = multipliers;
+      out.claim = ending.claim;
+      out.reason = ending.reason;
+    });
+  }
+
+ private:
+  newton::Limits limits_;
+  double guard_ = 0.5;
+};
+
+}  // namespace
+}  // namespace bowstring
+
+BOWSTRING_PLUGIN(bowstring::component<bowstring::Solver, bowstring::InteriorPoint>(
+    bowstring::Kind::solver, "interior-point",
+    "Primal-dual interior point with a filter, exact Hessians, and factors in the order along the curves",
+    bowstring::schema))

@@ -1,0 +1,390 @@
+#include "solvers/newton/barrier_method.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "plugins/sdk/guard.hpp"
+
+namespace bowstring::newton {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double least_slack = 1e-2;  // mm, of a row at a cold start
+constexpr double bound_push = 1e-2;   // of its size (at least 1): how far inside its bound an unknown starts
+constexpr double rows_of_first_barrier = 100.0;
+constexpr double barrier_factor = 0.2, barrier_power = 1.5;
+constexpr double subproblem = 10.0;         // errors of a solved subproblem, in units of the barrier
+constexpr double boundary = 0.99;           // share of the way to a bound that a step may go
+constexpr double multiplier_spread = 1e10;  // of z s against μ
+constexpr int refinements = 3;
+// Of the filter's line search.
+constexpr double slope_power = 2.3, violation_power = 1.1, armijo = 1e-4, small_violation = 1e-4;
+constexpr double shortest_step = 1e-8;
+constexpr int most_shortenings = 40;
+constexpr int most_shifts = 6;  // of the Hessian, after line searches that found nothing
+constexpr int patience = 8;     // iterations without progress at the last barrier
+
+double shorter(double step, double travelled) {
+  constexpr double allowed = 0.45, least = 0.1, most = 0.7;  // the guard stands at half a clearance
+  return step * (travelled > 0.0 ? std::clamp(allowed / travelled, least, most) : 0.5);
+}
+
+}  // namespace
+
+BarrierMethod::BarrierMethod(Point& point, Progress& progress, const BarrierSettings& settings)
+    : point_(point), progress_(progress), settings_(settings), problem_(point.problem()) {}
+
+void BarrierMethod::set_up(Span<const double> start_multipliers) {
+  sides_ = sides_of_rows(problem_);
+  bounds_ = sides_of_unknowns(problem_);
+  equalities_ = equality_rows(problem_);
+  row_share_ = std::min(1.0, rows_of_first_barrier / std::max<double>(1.0, static_cast<double>(sides_.size())));
+  barrier_ = settings_.first_barrier;
+  multipliers_.assign(at(problem_.rows()), 0.0);
+  if (!start_multipliers.empty()) std::copy(start_multipliers.begin(), start_multipliers.end(), multipliers_.begin());
+  const double mu = barrier_of_row();
+  const double floor = settings_.warm ? std::sqrt(mu) : least_slack;
+  slack_.clear();
+  force_.clear();
+  for (const Side& side : sides_) {
+    const double slack = std::max(-side.violation(point_.rows[at(side.index)]), floor);
+    const double given = std::max(0.0, side.sign * multipliers_[at(side.index)]);
+    slack_.push_back(slack);
+    force_.push_back(settings_.warm && given > 0.0 ? std::max(given, mu / slack) : mu / slack);
+  }
+  read_bounds();
+  bound_force_.clear();
+  for (const double slack : bound_slack_) bound_force_.push_back(mu / slack);
+  combine_multipliers();
+  softness_.assign(at(problem_.rows()), 0.0);
+  right_a_.resize(at(problem_.unknowns()));
+  right_b_.resize(at(problem_.rows()));
+  direction_.delta.resize(at(problem_.unknowns()));
+  direction_.rows.resize(at(problem_.rows()));
+  direction_.slack.resize(sides_.size());
+  direction_.force.resize(sides_.size());
+  direction_.bound_force.resize(bounds_.size());
+  trial_.q.resize(at(problem_.coordinates()));
+  trial_.rows.resize(at(problem_.rows()));
+}
+
+void BarrierMethod::read_bounds() {
+  problem_.values(point_.q, unknown_value_);
+  bound_slack_.clear();
+  for (const Side& side : bounds_) bound_slack_.push_back(-side.violation(unknown_value_[at(side.index)]));
+}
+
+/// Moves unknowns that start on their bound, or beyond, to the inside.
+void BarrierMethod::keep_inside() {
+  unknown_value_.resize(at(problem_.unknowns()));
+  problem_.values(point_.q, unknown_value_);
+  std::vector<double> delta(at(problem_.unknowns()), 0.0);
+  bool any = false;
+  for (const Side& side : sides_of_unknowns(problem_)) {
+    const double lower = problem_.lower()[at(side.index)], upper = problem_.upper()[at(side.index)];
+    double push = bound_push * std::max(1.0, std::fabs(side.bound));
+    if (std::isfinite(lower) && std::isfinite(upper)) push = std::min(push, 0.25 * (upper - lower));
+    const double slack = -side.violation(unknown_value_[at(side.index)]);
+    const double least = std::min(push, 0.1 * std::max(std::fabs(side.bound), 1e-3));
+    if (slack >= least) continue;
+    delta[at(side.index)] = side.bound - side.sign * least - unknown_value_[at(side.index)];
+    any = true;
+  }
+  if (!any) return;
+  std::vector<double> moved(point_.q.size());
+  problem_.retract(point_.q, delta, moved);
+  point_.q = moved;
+}
+
+double BarrierMethod::violation(const std::vector<double>& rows, const std::vector<double>& slack) const noexcept {
+  double sum = 0.0;
+  for (const int r : equalities_) sum += std::fabs(rows[at(r)] - problem_.row_lower()[at(r)]);
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    sum += std::fabs(sides_[k].violation(rows[at(sides_[k].index)]) + slack[k]);
+  }
+  return sum;
+}
+
+double BarrierMethod::objective(double energy, const std::vector<double>& slack,
+                                Span<const double> bound_slack) const noexcept {
+  // Products before logarithms: one logarithm for eight numbers of moderate size.
+  double sum = 0.0, product = 1.0;
+  int held = 0;
+  const auto add = [&](double number) {
+    product *= number;
+    if (++held == 8) {
+      sum += std::log(product);
+      product = 1.0;
+      held = 0;
+    }
+  };
+  for (const double s : slack) add(s);
+  for (const double s : bound_slack) add(s);
+  return energy - barrier_of_row() * (sum + std::log(product));
+}
+
+void BarrierMethod::combine_multipliers() {
+  for (const Side& side : sides_) multipliers_[at(side.index)] = 0.0;
+  for (std::size_t k = 0; k < sides_.size(); ++k) multipliers_[at(sides_[k].index)] += sides_[k].sign * force_[k];
+}
+
+void BarrierMethod::fill_stationarity() {
+  point_.lagrangian_gradient(multipliers_, stationarity_);
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    stationarity_[at(bounds_[k].index)] += bounds_[k].sign * bound_force_[k];
+  }
+}
+
+BarrierMethod::Errors BarrierMethod::errors(double mu) const noexcept {
+  Errors out;
+  out.stationarity = point_.in_newtons(stationarity_);
+  for (const int r : equalities_) {
+    out.violation = std::max(out.violation, std::fabs(point_.rows[at(r)] - problem_.row_lower()[at(r)]));
+  }
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const double gap = sides_[k].violation(point_.rows[at(sides_[k].index)]);
+    out.violation = std::max(out.violation, mu > 0.0 ? std::fabs(gap + slack_[k]) : gap);
+    // Of the problem itself the row's own distance counts, as the kernel's certificate measures it.
+    const double product = force_[k] * (mu > 0.0 ? slack_[k] : std::fabs(gap));
+    out.complementarity = std::max(out.complementarity, std::fabs(product - mu));
+  }
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    out.complementarity = std::max(out.complementarity, std::fabs(bound_force_[k] * bound_slack_[k] - mu));
+  }
+  return out;
+}
+
+double BarrierMethod::penetration() const noexcept { return errors(0.0).violation; }
+
+bool BarrierMethod::lower_barrier() {
+  const double last = settings_.last_barrier / row_share_;
+  if (barrier_ <= last) return false;
+  barrier_ = std::max(last, std::min(barrier_factor * barrier_, std::pow(barrier_, barrier_power)));
+  return true;
+}
+
+bool BarrierMethod::find_direction(double least_shift) {
+  const double mu = barrier_of_row();
+  std::vector<double>& w = point_.hessian;
+  const SparsityPattern pattern = problem_.hessian_pattern();
+  for (int u = 0; u < problem_.unknowns(); ++u) right_a_[at(u)] = -stationarity_[at(u)];
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    const int u = bounds_[k].index;
+    w[at(pattern.begin[at(u)])] += bound_force_[k] / bound_slack_[k];
+    right_a_[at(u)] -= bounds_[k].sign * (mu / bound_slack_[k] - bound_force_[k]);
+  }
+  std::fill(right_b_.begin(), right_b_.end(), 0.0);
+  for (const int r : equalities_) right_b_[at(r)] = problem_.row_lower()[at(r)] - point_.rows[at(r)];
+  // A row with two sides: Σ z/s stands for both.
+  for (const Side& side : sides_) softness_[at(side.index)] = 0.0;
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const Side& side = sides_[k];
+    const double ratio = force_[k] / slack_[k];
+    const double gap = side.violation(point_.rows[at(side.index)]) + slack_[k];
+    softness_[at(side.index)] += ratio;
+    right_b_[at(side.index)] += side.sign * (mu / slack_[k] - force_[k] + ratio * gap);
+  }
+  int previous = -1;
+  for (const Side& side : sides_) {
+    if (side.index == previous) continue;
+    previous = side.index;
+    double& e = softness_[at(side.index)];
+    e = 1.0 / e;
+    right_b_[at(side.index)] *= -e;
+  }
+  kkt::KktSystem::Values values;
+  values.hessian = w;
+  values.jacobian = point_.jacobian;
+  values.softness = softness_;
+  if (!inertia_.factor(system_, values, least_shift, progress_.result())) return false;
+  const auto start = std::chrono::steady_clock::now();
+  system_.solve(right_a_, right_b_, {}, refinements, direction_.delta, direction_.rows);
+  progress_.result().factorization_seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const Side& side = sides_[k];
+    const double rate = side.sign * point_.row_rate(side.index, direction_.delta);
+    const double gap = side.violation(point_.rows[at(side.index)]) + slack_[k];
+    direction_.slack[k] = -gap - rate;
+    direction_.force[k] = mu / slack_[k] - force_[k] - force_[k] / slack_[k] * direction_.slack[k];
+  }
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    const double change = -bounds_[k].sign * direction_.delta[at(bounds_[k].index)];
+    direction_.bound_force[k] = mu / bound_slack_[k] - bound_force_[k] - bound_force_[k] / bound_slack_[k] * change;
+  }
+  return true;
+}
+
+BarrierMethod::Step BarrierMethod::longest_step() const noexcept {
+  const double share = std::max(boundary, 1.0 - barrier_);
+  Step step{1.0, 1.0};
+  const auto limit = [&](double& length, double value, double change) {
+    if (change < 0.0) length = std::min(length, -share * value / change);
+  };
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    limit(step.primal, slack_[k], direction_.slack[k]);
+    limit(step.dual, force_[k], direction_.force[k]);
+  }
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    limit(step.primal, bound_slack_[k], -bounds_[k].sign * direction_.delta[at(bounds_[k].index)]);
+    limit(step.dual, bound_force_[k], direction_.bound_force[k]);
+  }
+  return step;
+}
+
+double BarrierMethod::slope() const noexcept {
+  double sum = 0.0;
+  for (int u = 0; u < problem_.unknowns(); ++u) sum += point_.gradient[at(u)] * direction_.delta[at(u)];
+  const double mu = barrier_of_row();
+  for (std::size_t k = 0; k < sides_.size(); ++k) sum -= mu * direction_.slack[k] / slack_[k];
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    sum += mu * bounds_[k].sign * direction_.delta[at(bounds_[k].index)] / bound_slack_[k];
+  }
+  return sum;
+}
+
+double BarrierMethod::search(double longest) {
+  const double here_violation = violation(point_.rows, slack_);
+  const double here_objective = objective(point_.energy, slack_, bound_slack_);
+  const double descent = slope();
+  std::vector<double> scaled(direction_.delta.size()), bound_slack(bounds_.size());
+  trial_.slack.resize(sides_.size());
+  double step = longest;
+  for (int shortenings = 0; shortenings < most_shortenings && step > shortest_step; ++shortenings) {
+    for (std::size_t u = 0; u < scaled.size(); ++u) scaled[u] = step * direction_.delta[u];
+    problem_.retract(point_.q, scaled, trial_.q);
+    const Status status = point_.try_out(trial_.q, trial_.energy, trial_.rows);
+    if (!status.ok()) {
+      if (status.code == Code::failed && shortenings > most_shortenings / 2) throw StatusError(status);
+      step = shorter(step, status.code == Code::refused ? problem_.travelled() : 0.0);
+      continue;
+    }
+    for (std::size_t k = 0; k < sides_.size(); ++k) trial_.slack[k] = slack_[k] + step * direction_.slack[k];
+    for (std::size_t k = 0; k < bounds_.size(); ++k) {
+      bound_slack[k] = bound_slack_[k] - step * bounds_[k].sign * direction_.delta[at(bounds_[k].index)];
+    }
+    const double new_violation = violation(trial_.rows, trial_.slack);
+    const double new_objective = objective(trial_.energy, trial_.slack, bound_slack);
+    const bool by_objective = descent < 0.0 &&
+                              here_violation <= small_violation * std::max(1.0, largest_start_violation_) &&
+                              step * std::pow(-descent, slope_power) > std::pow(here_violation, violation_power);
+    const double rounding = 10.0 * std::numeric_limits<double>::epsilon() * std::fabs(here_objective);
+    const bool enough = by_objective ? new_objective <= here_objective + armijo * step * descent + rounding
+                                     : Filter::improves(new_violation, new_objective, here_violation, here_objective);
+    if (enough && filter_.accepts(new_violation, new_objective)) {
+      if (!by_objective) filter_.add(here_violation, here_objective);
+      return step;
+    }
+    step *= 0.5;
+  }
+  return 0.0;
+}
+
+bool BarrierMethod::take(double primal, double dual, Ending& ending) {
+  point_.q.swap(trial_.q);
+  slack_.swap(trial_.slack);
+  const double mu = barrier_of_row();
+  const auto keep_near_path = [&](double& force, double slack) {
+    force = std::clamp(force, mu / (multiplier_spread * slack), multiplier_spread * mu / slack);
+  };
+  for (const int r : equalities_) multipliers_[at(r)] += primal * direction_.rows[at(r)];
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    force_[k] += dual * direction_.force[k];
+    keep_near_path(force_[k], slack_[k]);
+  }
+  read_bounds();
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    bound_force_[k] += dual * direction_.bound_force[k];
+    keep_near_path(bound_force_[k], bound_slack_[k]);
+  }
+  combine_multipliers();
+  bool new_epoch = false;
+  Status status = point_.accept(new_epoch);
+  if (status.ok()) status = point_.expand();
+  if (!status.ok()) {
+    ending = {Claim::failed, status.text.empty() ? "an accepted point could not be evaluated" : status.text};
+    return false;
+  }
+  if (new_epoch) system_.analyse(problem_, point_.jacobian);
+  return true;
+}
+
+Ending BarrierMethod::run(std::vector<double>& multipliers) {
+  const auto finish = [&](Ending ending) {
+    multipliers = multipliers_;
+    return ending;
+  };
+  keep_inside();
+  bool new_epoch = false;
+  Status status = point_.accept(new_epoch);
+  if (status.ok()) status = point_.expand();
+  if (!status.ok())
+    return {status.code == Code::failed ? Claim::failed : Claim::stalled,
+            "the start cannot be evaluated: " + status.text};
+  set_up(multipliers);
+  system_.analyse(problem_, point_.jacobian);
+  largest_start_violation_ = violation(point_.rows, slack_);
+  filter_.reset(1e4 * std::max(1.0, largest_start_violation_));
+  fill_stationarity();
+
+  const Limits& limits = progress_.limits();
+  const double target = std::max(limits.tolerance, problem_.rounding_floor());
+  double best = infinity;
+  int waited = 0;
+  double step = 0.0;
+  for (;;) {
+    Errors of_problem = errors(0.0);
+    if (!progress_.record(point_.energy, of_problem.stationarity, of_problem.violation, step)) {
+      return finish({Claim::stalled, progress_.reason()});
+    }
+    const bool last_barrier = barrier_ <= settings_.last_barrier / row_share_;
+    if (last_barrier && of_problem.stationarity <= target && of_problem.violation <= limits.tolerance &&
+        of_problem.complementarity <= limits.tolerance) {
+      return finish({Claim::optimal, "the first-order conditions hold to the tolerance"});
+    }
+    if (last_barrier) {
+      const double worst = std::max({of_problem.stationarity / target, of_problem.violation / limits.tolerance,
+                                     of_problem.complementarity / limits.tolerance});
+      waited = worst < 0.5 * best ? 0 : waited + 1;
+      best = std::min(best, worst);
+      if (waited >= patience) return finish({Claim::stalled, "nothing improves any more"});
+    }
+    // Solved subproblems lower the barrier, several times where the point allows it.
+    for (;;) {
+      const double mu = barrier_of_row();
+      const Errors now = errors(mu);
+      if (std::max({now.stationarity, now.violation, now.complementarity}) > subproblem * mu) break;
+      if (settings_.hand_over_barrier > 0.0 && barrier_ <= settings_.hand_over_barrier) {
+        return finish({Claim::optimal, "handed over"});
+      }
+      if (!lower_barrier()) break;
+      filter_.reset(1e4 * std::max(1.0, largest_start_violation_));
+    }
+
+    status = point_.find_hessian(multipliers_);
+    if (!status.ok()) return finish({Claim::failed, status.text});
+    double length = 0.0;
+    Step longest;
+    for (int shifts = 0; shifts <= most_shifts && length == 0.0; ++shifts) {
+      if (shifts > 0) {
+        status = point_.find_hessian(multipliers_);
+        if (!status.ok()) return finish({Claim::failed, status.text});
+      }
+      const double least_shift = shifts == 0 ? 0.0 : std::max(1e-3, 10.0 * inertia_.shift());
+      if (!find_direction(least_shift)) break;
+      longest = longest_step();
+      length = search(longest.primal);
+    }
+    if (length == 0.0) return finish({Claim::stalled, "no step improves the point"});
+    Ending ending;
+    if (!take(length, longest.dual, ending)) return finish(ending);
+    fill_stationarity();
+    step = length;
+  }
+}
+
+}  // namespace bowstring::newton
