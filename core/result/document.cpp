@@ -149,6 +149,14 @@ Json quantities(const Quantities& q) {
           {"line_load_integral_N", optional(q.line_load_integral)}};
 }
 
+Json reference_tangents(const Curve& curve) {
+  Json out = Json::array();
+  for (const std::vector<double>& tangent : curve.state1_tangent) {
+    out.push_back(vector(tangent.data(), curve.view.dimension));
+  }
+  return out;
+}
+
 Json curve(const Curve& curve, const CurveRecord& record) {
   const int d = curve.view.dimension;
   return {{"name", curve.name},
@@ -156,6 +164,7 @@ Json curve(const Curve& curve, const CurveRecord& record) {
           {"s_mm", numbers(record.arc)},
           {"points", rows(record.points, d)},
           {"reference_points", rows(curve.reference, d)},
+          {"reference_tangents", reference_tangents(curve)},
           {"frames", rows(record.frames, 4)},
           {"radius_mm", curve.radius.empty() ? Json(nullptr) : numbers(curve.radius)},
           {"curvature_per_mm", numbers(record.curvature)},
