@@ -194,6 +194,7 @@ class Recheck {
     const Thresholds& limit = result_.thresholds;
     require_below(out_.stationarity, limit.stationarity, "stationarity", "N");
     require_below(out_.rows.violation, limit.penetration, "row violated by", "mm");
+    require_below(out_.rows.chord, limit.penetration, "a chord whose row does not see it is in the wall by", "mm");
     require_below(out_.rows.complementarity, limit.complementarity, "complementarity", "N mm");
     require_below(out_.rows.negative, -limit.multiplier, "multiplier below zero by", "N");
     require_below(out_.rows.contact_entry, 10.0 * agreement, "contacts and state differ by", "mm or N");

@@ -148,14 +148,17 @@ WallPoint near_sample(const Following& following, const Place& place) {
 }
 
 /// The lowest gap near the followed place. Where another place is as near, to rounding, the one that the document
-/// names.
-WallPoint row_point(const ContactPlan& plan, const Wall& wall, const Place& place, double followed, double named_arc) {
+/// names. Behind a crossed wall the following says nothing more, and rows are judged where the document has them.
+WallPoint row_point(const ContactPlan& plan, const Wall& wall, const Place& place, const Following& following,
+                    double named_arc) {
   const Point x = chord_point(plan.wire->curve(), place.edge, place.t);
   const double radius = radius_along(plan.wire->curve(), place.edge, place.t);
   if (plan.type == "same-index-contact") return wall.at(x, radius, place.coordinate());
-  const WallPoint found = wall.lowest(x, radius, wall.descend(x, radius, followed).sigma, window);
-  if (!std::isfinite(named_arc)) return found;
+  const double followed = near_sample(following, place).sigma;
+  if (!std::isfinite(named_arc)) return wall.lowest(x, radius, followed, window);
   const WallPoint named = wall.descend(x, radius, sigma_of_arc(*plan.vessel, named_arc));
+  const double start = following.crossed() ? named.sigma : wall.descend(x, radius, followed).sigma;
+  const WallPoint found = wall.lowest(x, radius, start, window);
   return std::abs(named.gap - found.gap) <= tie ? named : found;
 }
 
@@ -316,15 +319,15 @@ void add_contact_rows(const Json& constraint, const Following& following, std::s
                   plan.outside);
   for (std::size_t r = 0; r < places.size(); ++r) {
     const ContactEntry& named = work.result->contacts.at(entry++);
-    const WallPoint point = row_point(plan, wall, places[r], near_sample(following, places[r]).sigma, named.vessel_arc);
+    const WallPoint point = row_point(plan, wall, places[r], following, named.vessel_arc);
     add_contact_row(plan, wall, form, places[r], point, mu[r], named, work);
   }
-  if (!by_segment || plan.outside) return;
+  if (!by_segment || plan.outside || following.crossed()) return;
   const Curve& wire = plan.wire->curve();
   for (int i = 0; i < wire.edges(); ++i) {
     if (wire.wholly_held(i) && wire.wholly_held(i + 1)) continue;
-    work.findings.violation.see(chord_maximum(plan, wall, following, i),
-                                "chord " + std::to_string(i) + " of '" + wire.name + "'");
+    work.findings.chord.see(chord_maximum(plan, wall, following, i),
+                            "chord " + std::to_string(i) + " of '" + wire.name + "'");
   }
 }
 

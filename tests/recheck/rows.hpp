@@ -23,6 +23,7 @@ struct Worst {
 /// What the rows of a document show, summed up over all of them.
 struct RowFindings {
   Worst violation;        ///< mm
+  Worst chord;            ///< mm: the largest gap along a chord of segment-wise contact, wherever its row stands
   Worst complementarity;  ///< N mm
   Worst negative;         ///< N: −multiplier of an inequality row
   double smallest_multiplier = std::numeric_limits<double>::infinity();
@@ -50,6 +51,8 @@ struct Following {
   std::vector<WallPoint> samples;   ///< samples_per_segment of every chord, and the last node
   double crossing_allowance = 0.0;  ///< κh²/4, at most c, + c/20, mm
   Worst depth;                      ///< mm; −∞ or the largest
+
+  bool crossed() const { return !(depth.value <= crossing_allowance); }
 };
 
 inline constexpr int samples_per_segment = 20;
