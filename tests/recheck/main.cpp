@@ -48,12 +48,12 @@ bool judge(const std::string& file, bool allow_unknown, Tally& tally) {
       ++tally.without_claim;
       return true;
     }
-    // Without a term the rest cannot balance: nothing can be said of such a document.
-    const bool holds = unknown.empty() ? found.reasons.empty() : allow_unknown;
-    if (!unknown.empty()) {
-      std::printf("%s\n", allow_unknown ? "allowed" : "DOES NOT HOLD: not rechecked");
+    const bool holds = found.reasons.empty() && (unknown.empty() || allow_unknown);
+    const char* verdict = unknown.empty() ? "holds" : "the rest holds";
+    if (holds) {
+      std::printf("%s\n", verdict);
     } else {
-      std::printf(holds ? "holds\n" : "DOES NOT HOLD: %s\n", joined(found.reasons).c_str());
+      std::printf("DOES NOT HOLD: %s\n", found.reasons.empty() ? "not rechecked" : joined(found.reasons).c_str());
     }
     ++(holds ? tally.hold : tally.fail);
     return holds;

@@ -304,7 +304,7 @@ Following follow(const CurveModel& wire, const CurveModel& vessel) {
   return out;
 }
 
-void add_contact_rows(const Json& constraint, const Following& following, std::size_t& entry, RowWork& work) {
+void add_contact_rows(const Json& constraint, const Following& following, std::size_t entry, RowWork& work) {
   const std::string name = constraint.value("name", constraint.at("type").get<std::string>());
   const auto group = work.result->multipliers.find(name);
   const std::size_t count = group == work.result->multipliers.end() ? 0 : group->second.size();

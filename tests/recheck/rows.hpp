@@ -60,7 +60,7 @@ inline constexpr int samples_per_segment = 20;
 /// The closest point on the SPLINE wall, from the wire's first end and continuously along its straight chords.
 Following follow(const CurveModel& wire, const CurveModel& vessel);
 
-/// Rows of one constraint; `entry` is the number of its first one in `contacts` and moves behind its last.
-void add_contact_rows(const Json& constraint, const Following& following, std::size_t& entry, RowWork& work);
+/// Rows of one constraint; `entry` is the number of its first one in `contacts`.
+void add_contact_rows(const Json& constraint, const Following& following, std::size_t entry, RowWork& work);
 
 }  // namespace recheck
