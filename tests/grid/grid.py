@@ -251,11 +251,10 @@ def run(asked):
     folder.mkdir(parents=True, exist_ok=True)
     rows = Runner(bowstring, folder, asked.time_limit, asked.fresh).run_all(chosen, solvers, asked.jobs)
     results.write_csv(folder / "grid.csv", rows)
-    missed = None
-    if asked.check:
-        missed = summary.unmet([row for row in rows if row["solver"] not in asked.exempt], expected)
+    subject = [row for row in rows if row["solver"] not in asked.exempt]
+    missed = summary.unmet(subject, expected) if asked.check else None
     rechecked = recheck(str(asked.recheck.absolute()), rows) if asked.recheck else None
-    made = report.summarise(rows, REFERENCE_SOLVER, node_distances(), missed, rechecked)
+    made = report.summarise(rows, REFERENCE_SOLVER, node_distances(), missed, len(summary.judged_rows(subject)), rechecked)
     (folder / "summary.txt").write_text(made.text())
     if asked.markdown:
         asked.markdown.write_text(made.text(markdown=True))

@@ -79,9 +79,9 @@ def add_failures(report, rows):
                    [[row["solver"], row["grid"], *(row[axis] for axis in AXES), row["status"], row["iterations"],
                      (row["reason"] or "")[:160]] for row in failed], listed=LISTED)
     left_out = [row for row in rows if row["status"] in NOT_RUN]
-    report.section("Left out", ["grid", "solver", "why", "scenes"],
-                   [[grid, solver, f"{status}: {reason}"[:160], len(members)] for (grid, solver, status, reason), members
-                    in summary.grouped(left_out, "grid", "solver", "status", "reason").items()])
+    report.section("Left out", ["grid", "solver", "status", "scenes", "why, the first"],
+                   [[*key, len(members), members[0]["reason"][:200]]
+                    for key, members in summary.grouped(left_out, "grid", "solver", "status").items()])
 
 
 def add_iterations(report, rows):
@@ -166,19 +166,21 @@ def add_builds(report, rows):
                                               "them again.")
 
 
-def add_unmet(report, missed):
+def add_unmet(report, missed, judged):
+    """`judged`: the number of runs that were judged."""
     kinds = {}
     for name, solver, _, _ in missed:
         kinds[name, solver] = kinds.get((name, solver), 0) + 1
     report.section("Expectations not met", ["expectation", "solver", "scenes"],
-                   [[*key, count] for key, count in kinds.items()], note="" if missed else "All are met.")
+                   [[*key, count] for key, count in kinds.items()], note=f"{judged} runs judged" + ("." if missed else ": all are met."))
     if missed:
         report.section("Expectations not met, one by one", ["expectation", "solver", "scene", "how"],
                        [[*miss[:3], miss[3][:160]] for miss in missed], listed=LISTED)
 
 
-def summarise(rows, reference, distance, missed=None, rechecked=None):
-    """The whole report. `missed`: from summary.unmet, where expectations were asked for; `rechecked`: (held, [text])."""
+def summarise(rows, reference, distance, missed=None, judged=0, rechecked=None):
+    """The whole report. `missed`: from summary.unmet, where expectations were asked for, and the number of runs `judged`;
+    `rechecked`: (documents that hold, [[file, what was said]])."""
     report = Report()
     add_builds(report, rows)
     add_statuses(report, rows)
@@ -191,5 +193,5 @@ def summarise(rows, reference, distance, missed=None, rechecked=None):
         held, fallen = rechecked
         report.section("Re-check", ["file", "said"], fallen, note=f"{held} documents hold, {len(fallen)} do not.", listed=LISTED)
     if missed is not None:
-        add_unmet(report, missed)
+        add_unmet(report, missed, judged)
     return report

@@ -26,12 +26,12 @@ def read_json(path):
 
 
 def status_without_document(record, warm):
-    """Exit codes 2 and 3 are refusals; a version without [start] says so by name."""
+    """Status and reason. Exit codes 2 and 3 are refusals; `warm`: a version without [start] says so by name."""
     if record["killed"]:
         return "killed", f"no end {record['kill_after_s']:g} s after its start"
     text = " ".join(record["stderr"].split())
     if record["exit"] in (2, 3):
-        return ("not available" if warm and "start" in text else "refused"), text
+        return ("not available" if warm and "'start' is not available" in text else "refused"), text
     return "crashed", f"exit {record['exit']}: {text}"
 
 

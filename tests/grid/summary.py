@@ -143,6 +143,7 @@ def peak_differences(rows):
     their coarsest and finest."""
     out = {}
     for key, members in families(converged(rows)).items():
+        members = [row for row in members if row["peak_displacement_mm"] is not None]
         if len(members) > 1:
             coarse, fine = members[0]["peak_displacement_mm"], members[-1]["peak_displacement_mm"]
             out[key] = (coarse, fine, relative_difference(coarse, fine))
@@ -155,7 +156,7 @@ def miss_converged(row, _):
 
 def miss_minimum(row, _):
     return (row["status"] == CONVERGED and row["second_order"] != "minimum" and
-            f"second-order verdict '{row['second_order']}', expected 'minimum'")
+            f"second-order verdict {row['second_order'] or 'missing'}, expected minimum")
 
 
 def miss_tunnel(row, _):
@@ -188,17 +189,25 @@ def parse_expectations(texts):
         name, equals, value = text.partition("=")
         if name not in EXPECTATIONS:
             raise ValueError(f"--expect {text}: unknown expectation '{name}'; expected one of: {', '.join(EXPECTATIONS)}")
+        try:
+            out[name] = float(value) if equals else None
+        except ValueError:
+            equals = ""
         if (name in NEED_VALUE) != bool(equals):
             raise ValueError(f"--expect {text}: expected '{name}{'=NUMBER' if name in NEED_VALUE else ''}'")
-        out[name] = float(value) if equals else None
     return out
+
+
+def judged_rows(rows):
+    """A vessel that only bends has nothing to keep: it is measured and not judged."""
+    return [row for row in ran(rows) if row["vessel"] == "full"]
 
 
 def unmet(rows, expected=None):
     """[(expectation, solver, scene or family, how it is missed)]. `expected`: {name: value} for every grid instead of
-    EXPECTED. A vessel that only bends has nothing to keep: it is measured and not judged."""
+    EXPECTED."""
     out = []
-    judged = [row for row in ran(rows) if row["vessel"] == "full"]
+    judged = judged_rows(rows)
     for row in judged:
         for name, value in (EXPECTED[row["grid"]] if expected is None else expected).items():
             judge = EXPECTATIONS[name]

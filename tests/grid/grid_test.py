@@ -1,0 +1,45 @@
+"""The solver grid as a test: a tenth of grid A by every native solver that is there, and about ten small scenes by the
+reference solver as well. BOWSTRING_TEST_FULL: all grids, and the reference on all meshes that it takes seconds for.
+
+Arguments: the command, a folder for results (emptied). Which solvers: grid.NATIVE_SOLVERS, grid.REFERENCE_SOLVER."""
+
+import os
+import pathlib
+import shutil
+import sys
+
+import grid
+
+
+def steps(offered, full):
+    """Argument lists for the grid runner. Of the reference no second-order verdict and no number of iterations is
+    expected."""
+    native = [name for name in grid.NATIVE_SOLVERS if name in offered]
+    reference = [name for name in (grid.REFERENCE_SOLVER,) if name in offered]
+    solvers = lambda names: [part for name in names for part in ("--solver", name)]
+    if native:
+        part = ["--full", *(part for name in grid.scenes.GRIDS for part in ("--grid", name))] if full else ["--every", "10"]
+        yield [*solvers(native), *part, "--time-limit", "60", "--check"]
+    if reference:
+        part = ["--full", "--nodes", "20,40,80,160"] if full else ["--every", "28", "--nodes", "20,40,80"]
+        yield [*solvers([*native, *reference]), *part, "--time-limit", "60", "--check", "--expect", "converged", "--expect",
+               "stationarity=1e-8"]
+
+
+def main(bowstring, folder):
+    results = pathlib.Path(folder) / "results"
+    shutil.rmtree(results, ignore_errors=True)
+    full = "BOWSTRING_TEST_FULL" in os.environ
+    codes = []
+    for arguments in steps(grid.offered_solvers(bowstring), full):
+        print("grid.py", *arguments, flush=True)
+        codes.append(grid.main([bowstring, *arguments, "--out", str(results)]))
+    if not codes:
+        print(f"none of {', '.join((*grid.NATIVE_SOLVERS, grid.REFERENCE_SOLVER))} is installed")
+        return 1
+    print(f"{codes.count(0)} passed, {len(codes) - codes.count(0)} failed")
+    return 1 if any(codes) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
