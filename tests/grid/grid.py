@@ -86,12 +86,13 @@ class Runner:
         return (record, document) if document else None
 
     def run(self, scene, solver):
-        """The row of one scene by one solver."""
+        """The row of one scene by one solver, and whether it was solved in this call."""
         out, beside = self.files(solver, scene.name)
         if scene.skip:
-            return results.row_of(scene, solver, None, None, out)
+            return results.row_of(scene, solver, None, None, out), False
         kept = self.kept(scene, solver)
-        if kept is None:
+        solved = kept is None
+        if solved:
             out.parent.mkdir(parents=True, exist_ok=True)
             out.unlink(missing_ok=True)
             beside.unlink(missing_ok=True)
@@ -100,7 +101,7 @@ class Runner:
             unfinished.write_text(json.dumps(record, indent=1))
             unfinished.rename(beside)
             kept = record, results.read_json(out)
-        return results.row_of(scene, solver, *kept, out)
+        return results.row_of(scene, solver, *kept, out), solved
 
     def process(self, scene, solver, out):
         overrides = self.overrides(scene, solver)
@@ -147,19 +148,25 @@ class Runner:
     def run_all(self, chosen, solvers, jobs):
         """Rows of all scenes by all solvers, in the order given. What a warm start is taken from has run before it."""
         rows = {}
-        total = len(chosen) * len(solvers)
+        total, told = len(chosen) * len(solvers), 0
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             try:
                 for warm in (False, True):
                     futures = {pool.submit(self.run, scene, solver): (scene.name, solver)
                                for scene in chosen if bool(scene.after) == warm for solver in solvers}
                     for future in concurrent.futures.as_completed(futures):
-                        row = rows[futures[future]] = future.result()
-                        print(f"{len(rows)}/{total} {row['solver']} {row['scene']}: {row['status']}", file=sys.stderr, flush=True)
+                        row, solved = future.result()
+                        rows[futures[future]] = row
+                        if solved:
+                            told += 1
+                            print(f"{len(rows)}/{total} {row['solver']} {row['scene']}: {row['status']}", file=sys.stderr,
+                                  flush=True)
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 self.stop()
                 raise
+        if told < total:
+            print(f"{total - told} of {total} results are kept from earlier calls, or left out", file=sys.stderr, flush=True)
         return [rows[scene.name, solver] for scene in chosen for solver in solvers]
 
 
