@@ -31,6 +31,10 @@ class WrongInput(Exception):
     pass
 
 
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
 def offered_solvers(bowstring):
     try:
         told = subprocess.run([bowstring, "plugins", "solver", "--json"], stdout=subprocess.PIPE, check=True).stdout
@@ -45,8 +49,8 @@ def chosen_solvers(bowstring, asked):
         return [name for name in (*NATIVE_SOLVERS, REFERENCE_SOLVER) if name in offered]
     for name in asked:
         if name not in offered:
-            raise WrongInput(f"--solver {name}: this bowstring has no such solver; expected one of: {', '.join(offered)} "
-                             f"(`{bowstring} plugins solver` lists them)")
+            raise WrongInput(f"--solver {name}: this bowstring has no such solver; expected one of: "
+                             f"{', '.join(offered)} (`{bowstring} plugins solver` lists them)")
     return list(dict.fromkeys(asked))
 
 
@@ -159,14 +163,13 @@ class Runner:
                         rows[futures[future]] = row
                         if solved:
                             told += 1
-                            print(f"{len(rows)}/{total} {row['solver']} {row['scene']}: {row['status']}", file=sys.stderr,
-                                  flush=True)
+                            say(f"{len(rows)}/{total} {row['solver']} {row['scene']}: {row['status']}")
             except BaseException:
                 pool.shutdown(wait=False, cancel_futures=True)
                 self.stop()
                 raise
         if told < total:
-            print(f"{total - told} of {total} results are kept from earlier calls, or left out", file=sys.stderr, flush=True)
+            say(f"{total - told} of {total} results are kept from earlier calls, or left out")
         return [rows[scene.name, solver] for scene in chosen for solver in solvers]
 
 
@@ -190,8 +193,11 @@ def node_distances():
 def recheck(program, rows):
     """(documents that hold, [[file, what was said]]) by a program that takes documents and exits 0 if each holds."""
     files = [row["result_file"] for row in rows if row["result_file"]]
-    call = lambda batch: subprocess.run([program, *batch], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     fallen = []
+
+    def call(batch):
+        return subprocess.run([program, *batch], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+
     for begin in range(0, len(files), RECHECK_BATCH):
         batch = files[begin:begin + RECHECK_BATCH]
         if call(batch).returncode == 0:
@@ -221,7 +227,8 @@ def parse(arguments):
                                                           + REFERENCE_SOLVER)
     parser.add_argument("--grid", action="append", choices=list(scenes.GRIDS), help="repeatable; default A")
     part = parser.add_mutually_exclusive_group()
-    part.add_argument("--every", type=int, metavar="K", help="every K-th scene; default: a tenth of A, all of the others")
+    part.add_argument("--every", type=int, metavar="K",
+                      help="every K-th scene; default: a tenth of A, all of the others")
     part.add_argument("--full", action="store_true", help="all scenes, and the longer mesh axis of C")
     parser.add_argument("--nodes", type=lambda text: {int(n) for n in text.split(",")}, metavar="N,N,…")
     parser.add_argument("--match", default="", metavar="TEXT", help="only scenes with this in their name")
@@ -231,8 +238,8 @@ def parse(arguments):
     parser.add_argument("--fresh", action="store_true", help="solve again what is there")
     parser.add_argument("--markdown", type=pathlib.Path, metavar="FILE")
     parser.add_argument("--check", action="store_true", help="exit 1 where an expectation is not met")
-    parser.add_argument("--expect", action="append", metavar="NAME[=VALUE]", help="instead of summary.EXPECTED; repeatable: "
-                        + ", ".join(summary.EXPECTATIONS))
+    parser.add_argument("--expect", action="append", metavar="NAME[=VALUE]",
+                        help="instead of summary.EXPECTED; repeatable: " + ", ".join(summary.EXPECTATIONS))
     parser.add_argument("--exempt", action="append", default=[], metavar="SOLVER", help="not judged by --check")
     parser.add_argument("--recheck", type=pathlib.Path, metavar="PROGRAM")
     parser.add_argument("--list", action="store_true", help="print the chosen scenes, and run nothing")
@@ -261,7 +268,8 @@ def run(asked):
     subject = [row for row in rows if row["solver"] not in asked.exempt]
     missed = summary.unmet(subject, expected) if asked.check else None
     rechecked = recheck(str(asked.recheck.absolute()), rows) if asked.recheck else None
-    made = report.summarise(rows, REFERENCE_SOLVER, node_distances(), missed, len(summary.judged_rows(subject)), rechecked)
+    judged = len(summary.judged_rows(subject))
+    made = report.summarise(rows, REFERENCE_SOLVER, node_distances(), missed, judged, rechecked)
     (folder / "summary.txt").write_text(made.text())
     if asked.markdown:
         asked.markdown.write_text(made.text(markdown=True))
@@ -274,10 +282,10 @@ def main(arguments):
     try:
         return run(asked)
     except (WrongInput, ValueError) as error:
-        print(f"grid: {error}", file=sys.stderr)
+        say(f"grid: {error}")
         return 2
     except KeyboardInterrupt:
-        print("grid: stopped; what is finished is kept", file=sys.stderr)
+        say("grid: stopped; what is finished is kept")
         return 130
 
 

@@ -9,6 +9,11 @@ import shutil
 import sys
 
 import grid
+import scenes
+
+
+def option(name, values):
+    return [part for value in values for part in (name, value)]
 
 
 def steps(offered, full):
@@ -16,14 +21,14 @@ def steps(offered, full):
     expected."""
     native = [name for name in grid.NATIVE_SOLVERS if name in offered]
     reference = [name for name in (grid.REFERENCE_SOLVER,) if name in offered]
-    solvers = lambda names: [part for name in names for part in ("--solver", name)]
+    common = ["--time-limit", "60", "--check"]
     if native:
-        part = ["--full", *(part for name in grid.scenes.GRIDS for part in ("--grid", name))] if full else ["--every", "10"]
-        yield [*solvers(native), *part, "--time-limit", "60", "--check"]
+        part = ["--full", *option("--grid", scenes.GRIDS)] if full else ["--every", "10"]
+        yield [*option("--solver", native), *part, *common]
     if reference:
         part = ["--full", "--nodes", "20,40,80,160"] if full else ["--every", "28", "--nodes", "20,40,80"]
-        yield [*solvers([*native, *reference]), *part, "--time-limit", "60", "--check", "--expect", "converged", "--expect",
-               "stationarity=1e-8"]
+        expected = option("--expect", ["converged", "stationarity=1e-8"])
+        yield [*option("--solver", [*native, *reference]), *part, *common, *expected]
 
 
 def main(bowstring, folder):

@@ -49,10 +49,10 @@ def render(title, headers, rows, note, markdown):
 
 
 def pivot(values, column_name):
-    """Headers and rows of {(grid, solver, nodes): text}: one row per grid and solver, one column per N."""
+    """Headers and rows of {(part, solver, nodes): text}: one row per part and solver, one column per N."""
     columns = sorted({nodes for _, _, nodes in values})
-    keys = list(dict.fromkeys((grid, solver) for grid, solver, _ in values))
-    headers = ["grid", "solver", *(f"{column_name} {nodes}" for nodes in columns)]
+    keys = list(dict.fromkeys((part, solver) for part, solver, _ in values))
+    headers = ["scenes", "solver", *(f"{column_name} {nodes}" for nodes in columns)]
     return headers, [[*key, *(values.get((*key, nodes), "–") for nodes in columns)] for key in keys]
 
 
@@ -63,7 +63,8 @@ def add_statuses(report, rows):
                    [[*key, sum(counter.values()), *(counter[status] for status in statuses)]
                     for key, counter in counts.items()])
     verdicts = summary.grouped(summary.converged(rows), "grid", "solver", "second_order")
-    report.section("Second-order verdicts of what converged", ["grid", "solver", "verdict", "scenes", "with weakly active rows"],
+    report.section("Second-order verdicts of what converged",
+                   ["grid", "solver", "verdict", "scenes", "with weakly active rows"],
                    [[grid, solver, verdict, len(members), sum(row["weakly_active_count"] > 0 for row in members)]
                     for (grid, solver, verdict), members in verdicts.items()])
 
@@ -85,12 +86,12 @@ def add_failures(report, rows):
 
 
 def add_iterations(report, rows):
-    figures = summary.figures_by_nodes(rows, "iterations")
-    report.section("Iterations, median / largest", *pivot({key: f"{median:g} / {most}"
-                                                           for key, (_, median, most) in figures.items()}, "N"))
-    ratios = summary.iteration_ratios(rows)
+    for key in ("iterations", "epochs"):
+        figures = {group: f"{median:g} / {most}"
+                   for group, (_, median, most) in summary.figures_by_nodes(rows, key).items()}
+        report.section(f"{key.capitalize()}, median / largest", *pivot(figures, "N"))
     grouped = {}
-    for (solver, group), ratio in ratios.items():
+    for (solver, group), ratio in summary.iteration_ratios(rows).items():
         grouped.setdefault((group[0], solver), []).append((ratio[2], ratio, group))
     low, high = summary.RATIO_NODES
     report.section(f"Most over fewest iterations of a family, N = {low}…{high}",
@@ -126,7 +127,8 @@ def add_agreement(report, rows, distance):
         table.append([*solvers, len(members), len(same), max((pair[3] for pair in same), default=None),
                       max((pair[4] for pair in same), default=None)])
     report.section("Agreement where both converged",
-                   ["solver", "and", "scenes", "same basin", "largest relative energy difference", "largest node distance, mm"],
+                   ["solver", "and", "scenes", "same basin", "largest relative energy difference",
+                    "largest node distance, mm"],
                    table)
     report.section("Different basins", ["solver", "and", "scene", "relative energy difference", "node distance, mm"],
                    sorted(different, key=lambda pair: -pair[3]), listed=LISTED)
@@ -136,16 +138,19 @@ def add_grid_tables(report, rows):
     peaks = [(solver, group, figures) for (solver, group), figures in
              summary.peak_differences([row for row in rows if row["grid"] == "B"]).items()]
     if peaks:
-        report.section("Grid B: peak displacement on two meshes", ["solver", "scene", "coarse, mm", "fine, mm", "difference"],
+        report.section("Grid B: peak displacement on two meshes",
+                       ["solver", "scene", "coarse, mm", "fine, mm", "difference"],
                        [[solver, summary.family_name(group), *figures] for solver, group, figures in peaks])
     meshes = summary.families([row for row in summary.ran(rows) if row["grid"] == "C"])
     if meshes:
         columns = sorted({row["nodes"] for members in meshes.values() for row in members})
         table = []
         for (solver, group), members in meshes.items():
-            cells = {row["nodes"]: str(row["iterations"]) if row["status"] == CONVERGED else row["status"] for row in members}
+            cells = {row["nodes"]: str(row["iterations"]) if row["status"] == CONVERGED else row["status"]
+                     for row in members}
             table.append([solver, *group[1:4], *(cells.get(nodes, "–") for nodes in columns)])
-        report.section("Grid C: iterations", ["solver", "anatomy", "kinematics", "vessel", *(f"N {n}" for n in columns)], table)
+        report.section("Grid C: iterations",
+                       ["solver", "anatomy", "kinematics", "vessel", *(f"N {n}" for n in columns)], table)
     warm = [row for row in summary.converged(rows) if row["grid"] == "W" and row["start"] != "first"]
     if warm:
         def spread(members, key):
@@ -153,7 +158,8 @@ def add_grid_tables(report, rows):
             return f"{statistics.median(values):.4g} / {max(values):.4g}" if values else "–"
         report.section("Grid W: a load changed by 5 %, median / largest",
                        ["solver", "start", "scenes", "factorizations", "iterations", "solve, s"],
-                       [[*key, len(members), *(spread(members, what) for what in ("factorizations", "iterations", "solve_s"))]
+                       [[*key, len(members),
+                         *(spread(members, what) for what in ("factorizations", "iterations", "solve_s"))]
                         for key, members in summary.grouped(warm, "solver", "start").items()])
 
 
@@ -162,8 +168,8 @@ def add_builds(report, rows):
     for solver, members in summary.grouped(rows, "solver").items():
         builds = {row["solver_sha256"] for row in members} - {None}
         if len(builds) > 1:
-            report.section("Warning", [], [], f"The results of {solver} come from {len(builds)} builds of it: --fresh solves "
-                                              "them again.")
+            report.section("Warning", [], [],
+                           f"The results of {solver} come from {len(builds)} builds of it: --fresh solves them again.")
 
 
 def add_unmet(report, missed, judged):
@@ -172,15 +178,16 @@ def add_unmet(report, missed, judged):
     for name, solver, _, _ in missed:
         kinds[name, solver] = kinds.get((name, solver), 0) + 1
     report.section("Expectations not met", ["expectation", "solver", "scenes"],
-                   [[*key, count] for key, count in kinds.items()], note=f"{judged} runs judged" + ("." if missed else ": all are met."))
+                   [[*key, count] for key, count in kinds.items()],
+                   note=f"{judged} runs judged" + ("." if missed else ": all are met."))
     if missed:
         report.section("Expectations not met, one by one", ["expectation", "solver", "scene", "how"],
                        [[*miss[:3], miss[3][:160]] for miss in missed], listed=LISTED)
 
 
 def summarise(rows, reference, distance, missed=None, judged=0, rechecked=None):
-    """The whole report. `missed`: from summary.unmet, where expectations were asked for, and the number of runs `judged`;
-    `rechecked`: (documents that hold, [[file, what was said]])."""
+    """The whole report. `missed`: from summary.unmet, where expectations were asked for, and the number of runs
+    `judged`; `rechecked`: (documents that hold, [[file, what was said]])."""
     report = Report()
     add_builds(report, rows)
     add_statuses(report, rows)
@@ -191,7 +198,8 @@ def summarise(rows, reference, distance, missed=None, judged=0, rechecked=None):
     add_grid_tables(report, rows)
     if rechecked is not None:
         held, fallen = rechecked
-        report.section("Re-check", ["file", "said"], fallen, note=f"{held} documents hold, {len(fallen)} do not.", listed=LISTED)
+        report.section("Re-check", ["file", "said"], fallen,
+                       note=f"{held} documents hold, {len(fallen)} do not.", listed=LISTED)
     if missed is not None:
         add_unmet(report, missed, judged)
     return report

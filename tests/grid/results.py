@@ -53,8 +53,9 @@ def row_of(scene, solver, record, document, result_file):
                 for key in ("second_order", "rounding_floor_N", "max_penetration_mm", "max_penetration_dense_mm",
                             "min_stretch")})
     row.update(status=document["status"], reason=document["reason"], stationarity_N=certificate["stationarity"],
-               weakly_active_count=len(certificate["weakly_active"] or ()), crossings=len(certificate["crossings"] or ()),
-               folds=len(certificate["folds"] or ()), energy_N_mm=document["energy"]["total"],
+               weakly_active_count=len(certificate["weakly_active"] or ()),
+               crossings=len(certificate["crossings"] or ()), folds=len(certificate["folds"] or ()),
+               energy_N_mm=document["energy"]["total"],
                peak_displacement_mm=document["quantities"]["peak_displacement_mm"], result_file=str(result_file))
     for plugin in document["provenance"]["plugins"]:
         if plugin["kind"] == "solver":

@@ -29,8 +29,8 @@ AXES = ("anatomy", "kinematics", "vessel", "contact", "start", "nodes", "wire_be
 
 @dataclasses.dataclass(frozen=True)
 class Scene:
-    """One composition with overrides (path, TOML value). `axes` follows AXES; `after`: the scene whose result a warm start
-    is taken from; `skip`: why it cannot run here, or empty."""
+    """One composition with overrides (path, TOML value). `axes` follows AXES; `after`: the scene whose result a warm
+    start is taken from; `skip`: why it cannot run here, or empty."""
 
     grid: str
     name: str
@@ -99,7 +99,8 @@ def grid_w(full=False):
     scenes = []
     choices = [("planar", nodes, 65, 10) for nodes in GRID_W_NODES]
     choices += [("helical", nodes, 65, 10) for nodes in GRID_W_NODES]
-    choices += [("helical", 320, 6132, 10), ("planar", 320, 6132, 10), ("artery", 200, 4857, 10), ("artery", 200, 291, 5)]
+    choices += [("helical", 320, 6132, 10), ("planar", 320, 6132, 10)]
+    choices += [("artery", 200, 4857, 10), ("artery", 200, 291, 5)]
     for anatomy, nodes, bending, tension in choices:
         first = make("W", anatomy, nodes, bending, tension, start="first")
         changed = tension * LOAD_CHANGE
@@ -117,8 +118,8 @@ def shuffled(scenes):
 
 
 def select(scenes, every=1, nodes=None, match=""):
-    """Every `every`-th of those with a number of nodes in `nodes` and `match` in their name; what a warm start needs comes
-    along. Scenes without `after` stand first."""
+    """Every `every`-th of those with a number of nodes in `nodes` and `match` in their name; what a warm start needs
+    comes along. Scenes without `after` stand first."""
     by_name = {scene.name: scene for scene in scenes}
     kept = [scene for scene in shuffled(scenes) if (not nodes or scene.nodes in nodes) and match in scene.name]
     chosen = {scene.name: scene for scene in kept[::every]}

@@ -43,6 +43,19 @@ def family(row):
     return (row["grid"],) + tuple(row[axis] for axis in AXES if axis != "nodes")
 
 
+def part(row):
+    """Formulations of contact differ too much to be taken together."""
+    return f"{row['grid']} {row['contact']}"
+
+
+def by_part(rows):
+    """{(part, solver, nodes): rows}, sorted."""
+    groups = collections.defaultdict(list)
+    for row in rows:
+        groups[part(row), row["solver"], row["nodes"]].append(row)
+    return dict(sorted(groups.items()))
+
+
 def families(rows):
     """{(solver, family): rows, coarse first}."""
     groups = collections.defaultdict(list)
@@ -68,17 +81,17 @@ def kind_of_failure(row):
 
 
 def figures_by_nodes(rows, key):
-    """{(grid, solver, nodes): (count, median, largest)} of `key` over converged rows."""
+    """{(part, solver, nodes): (count, median, largest)} of `key` over converged rows."""
     out = {}
-    for group, members in grouped(converged(rows), "grid", "solver", "nodes").items():
+    for group, members in by_part(converged(rows)).items():
         values = [row[key] for row in members if row[key] is not None]
         if values:
             out[group] = (len(values), statistics.median(values), max(values))
-    return dict(sorted(out.items()))
+    return out
 
 
 def iteration_ratios(rows, low=RATIO_NODES[0], high=RATIO_NODES[1]):
-    """{(solver, family): (fewest, most, most/fewest)} over meshes with low ≤ N ≤ high, of families with two and more."""
+    """{(solver, family): (fewest, most, most/fewest)} over meshes with low ≤ N ≤ high, of families with two or more."""
     out = {}
     for key, members in families(converged(rows)).items():
         counts = [row["iterations"] for row in members if low <= row["nodes"] <= high and row["iterations"]]
@@ -103,23 +116,23 @@ def shared_slope(groups):
 
 
 def time_exponents(rows, key="solve_s"):
-    """{(grid, solver): exponent or None} of `key` over N."""
+    """{(part, solver): exponent or None} of `key` over N."""
     points = collections.defaultdict(list)
-    for (solver, group), members in families(converged(rows)).items():
-        points[group[0], solver].append([(row["nodes"], row[key]) for row in members
+    for (solver, _), members in families(converged(rows)).items():
+        points[part(members[0]), solver].append([(row["nodes"], row[key]) for row in members
                                          if row["nodes"] >= FIT_FROM_NODES and row[key]])
     return {group: shared_slope(values) for group, values in points.items()}
 
 
 def ratios_to(rows, reference, key="solve_s"):
-    """{(grid, solver, nodes): (count, median of key/key of the reference)} over scenes that both solved."""
+    """{(part, solver, nodes): (count, median of key/key of the reference)} over scenes that both solved."""
     told = {row["scene"]: row[key] for row in converged(rows) if row["solver"] == reference and row[key]}
     out = {}
-    for group, members in grouped(converged(rows), "grid", "solver", "nodes").items():
+    for group, members in by_part(converged(rows)).items():
         ratios = [row[key] / told[row["scene"]] for row in members if row["scene"] in told and row[key]]
         if ratios and group[1] != reference:
             out[group] = (len(ratios), statistics.median(ratios))
-    return dict(sorted(out.items()))
+    return out
 
 
 def relative_difference(first, second):
@@ -139,8 +152,8 @@ def agreement(rows, distance):
 
 
 def peak_differences(rows):
-    """{(solver, family): (coarse peak, fine peak, relative difference)} of converged families on two meshes and more, by
-    their coarsest and finest."""
+    """{(solver, family): (coarse peak, fine peak, relative difference)} of families that converged on two meshes and
+    more, by their coarsest and finest."""
     out = {}
     for key, members in families(converged(rows)).items():
         members = [row for row in members if row["peak_displacement_mm"] is not None]
@@ -175,8 +188,8 @@ def miss_iterations(row, bound):
         f"{row['iterations']} iterations, expected at most {bound:g}")
 
 
-# Expectations of one row: a function that says how it is missed, or something false. "peak" and "iteration-ratio" are of
-# a family.
+# Expectations of one row: a function that says how it is missed, or something false. "peak" and "iteration-ratio" are
+# of a family.
 EXPECTATIONS = {"converged": miss_converged, "minimum": miss_minimum, "not-tunnelled": miss_tunnel,
                 "stationarity": miss_stationarity, "iterations": miss_iterations, "peak": None, "iteration-ratio": None}
 NEED_VALUE = ("stationarity", "iterations", "peak", "iteration-ratio")
@@ -188,7 +201,8 @@ def parse_expectations(texts):
     for text in texts:
         name, equals, value = text.partition("=")
         if name not in EXPECTATIONS:
-            raise ValueError(f"--expect {text}: unknown expectation '{name}'; expected one of: {', '.join(EXPECTATIONS)}")
+            raise ValueError(f"--expect {text}: unknown expectation '{name}'; expected one of: "
+                             f"{', '.join(EXPECTATIONS)}")
         try:
             out[name] = float(value) if equals else None
         except ValueError:

@@ -1,5 +1,5 @@
-"""The grid runner's own functions: choice of scenes, rows, fits, agreement, expectations, and the runner on a stand-in for
-the command. Prints 'N passed, N failed'."""
+"""The grid runner's own functions: choice of scenes, rows, fits, agreement, expectations, and the runner on a stand-in
+for the command. Prints 'N passed, N failed'."""
 
 import json
 import os
@@ -62,7 +62,8 @@ class Scenes(unittest.TestCase):
             os.environ[scenes.DATA] = "/data"
             scene = scenes.make("B", "artery", 800, 291, 5)
         self.assertEqual(scene.skip, "")
-        self.assertIn('"/data/vmr_0110/left_smoothed_200.csv", nodes = 800', dict(scene.overrides)["vessel.iliac.geometry"])
+        geometry = dict(scene.overrides)["vessel.iliac.geometry"]
+        self.assertIn('"/data/vmr_0110/left_smoothed_200.csv", nodes = 800', geometry)
 
     def test_a_vessel_that_only_bends(self):
         stiffness = dict(scenes.make("C", "planar", 80, 65, 10, vessel="bending").overrides)
@@ -78,16 +79,17 @@ class Rows(unittest.TestCase):
         document = {"status": "converged", "reason": "good", "energy": {"total": 7.0},
                     "solver": {"iterations": 9, "factorizations": None, "epochs": 1, "evaluations": 11,
                                "seconds": {"solve": 0.5, "total": 0.6, "evaluation": 0.1, "factorization": None}},
-                    "certificate": {"second_order": None, "weakly_active": [4], "stationarity": 1e-9, "rounding_floor_N": 0.0,
-                                    "max_penetration_mm": 0.0, "max_penetration_dense_mm": 0.01, "min_stretch": 0.9,
+                    "certificate": {"second_order": None, "weakly_active": [4], "stationarity": 1e-9,
+                                    "rounding_floor_N": 0.0, "max_penetration_mm": 0.0, "max_penetration_dense_mm": 0.01,
+                                    "min_stretch": 0.9,
                                     "crossings": [], "folds": ["there"]},
                     "quantities": {"peak_displacement_mm": 3.0},
                     "provenance": {"plugins": [{"kind": "solver", "name": "ipopt", "sha256": "ab"}]}}
         made = results.row_of(self.scene, "ipopt", self.record, document, "out.json")
         self.assertEqual(set(made), set(results.COLUMNS))
-        self.assertEqual((made["nodes"], made["iterations"], made["weakly_active_count"], made["folds"], made["solve_s"],
-                          made["energy_N_mm"], made["solver_sha256"], made["factorizations"]),
-                         (80, 9, 1, 1, 0.5, 7.0, "ab", None))
+        keys = ("nodes", "iterations", "weakly_active_count", "folds", "solve_s", "energy_N_mm", "solver_sha256",
+                "factorizations")
+        self.assertEqual([made[key] for key in keys], [80, 9, 1, 1, 0.5, 7.0, "ab", None])
 
     def test_runs_without_a_document(self):
         def status(**changed):
@@ -99,15 +101,18 @@ class Rows(unittest.TestCase):
         self.assertEqual(results.row_of(self.scene, "ipopt", None, None, "out.json")["status"], "skipped")
 
     def test_a_refused_start_is_not_available_and_nothing_else_is(self):
-        said = "path 'start.from': 'start' is not available in this version"
-        self.assertEqual(results.status_without_document({**self.record, "exit": 2, "stderr": said}, True)[0], "not available")
-        other = "path 'start.from': there is no file 'first.json'"
-        self.assertEqual(results.status_without_document({**self.record, "exit": 2, "stderr": other}, True)[0], "refused")
+        for said, status in (("path 'start.from': 'start' is not available in this version", "not available"),
+                             ("path 'start.from': there is no file 'first.json'", "refused")):
+            record = {**self.record, "exit": 2, "stderr": said}
+            self.assertEqual(results.status_without_document(record, True)[0], status)
+            self.assertEqual(results.status_without_document(record, False)[0], "refused")
 
     def test_distance_of_nodes(self):
         first = {"wire": [[0.0, 0.0], [1.0, 0.0]], "vessel": [[0.0, 0.0]]}
-        self.assertEqual(results.largest_distance(first, {"wire": [[0.0, 0.0], [4.0, 4.0]], "vessel": [[1.0, 0.0]]}), 5.0)
-        self.assertEqual(results.largest_distance(first, {"wire": [[0.0, 0.0]], "vessel": [[0.0, 0.0]]}), float("inf"))
+        second = {"wire": [[0.0, 0.0], [4.0, 4.0]], "vessel": [[1.0, 0.0]]}
+        self.assertEqual(results.largest_distance(first, second), 5.0)
+        coarser = {"wire": [[0.0, 0.0]], "vessel": [[0.0, 0.0]]}
+        self.assertEqual(results.largest_distance(first, coarser), float("inf"))
 
 
 class Fits(unittest.TestCase):
@@ -127,8 +132,8 @@ class Fits(unittest.TestCase):
                 for n in (20, 80, 160, 320)]
         rows[0]["solve_s"] = 1e9  # below the range of the fit
         exponents = summary.time_exponents(rows)
-        self.assertAlmostEqual(exponents["A", "ipopt"], 2.0)
-        self.assertAlmostEqual(exponents["A", "interior-point"], 1.0)
+        self.assertAlmostEqual(exponents["A node-wise", "ipopt"], 2.0)
+        self.assertAlmostEqual(exponents["A node-wise", "interior-point"], 1.0)
 
 
 class Summaries(unittest.TestCase):
@@ -141,9 +146,14 @@ class Summaries(unittest.TestCase):
         self.assertEqual(summary.kind_of_failure(rows[1]), "stalled: at mm no more progress")
 
     def test_figures_by_nodes(self):
-        rows = [row(iterations=k) for k in (10, 12, 30)] + [row(iterations=99, status="stalled"), row(iterations=5, nodes=20)]
+        rows = [row(iterations=k) for k in (10, 12, 30)]
+        rows += [row(iterations=99, status="stalled"), row(iterations=5, nodes=20)]
         self.assertEqual(summary.figures_by_nodes(rows, "iterations"),
-                         {("A", "ipopt", 20): (1, 5, 5), ("A", "ipopt", 80): (3, 12, 30)})
+                         {("A node-wise", "ipopt", 20): (1, 5, 5), ("A node-wise", "ipopt", 80): (3, 12, 30)})
+
+    def test_formulations_of_contact_stand_apart(self):
+        rows = [row(iterations=10), row(iterations=30, contact="segment-wise")]
+        self.assertEqual([figures[1] for figures in summary.figures_by_nodes(rows, "iterations").values()], [10, 30])
 
     def test_iteration_ratio_of_a_family(self):
         rows = [row(nodes=n, iterations=k) for n, k in ((20, 1), (80, 10), (640, 25), (1280, 20))]
@@ -154,7 +164,7 @@ class Summaries(unittest.TestCase):
     def test_ratio_to_the_reference_takes_scenes_that_both_solved(self):
         rows = [row(name="a", solve_s=1.0), row(name="b", solve_s=1.0, status="stalled"),
                 row("interior-point", name="a", solve_s=0.25), row("interior-point", name="b", solve_s=99.0)]
-        self.assertEqual(summary.ratios_to(rows, "ipopt"), {("A", "interior-point", 80): (1, 0.25)})
+        self.assertEqual(summary.ratios_to(rows, "ipopt"), {("A node-wise", "interior-point", 80): (1, 0.25)})
 
     def test_agreement_tells_basins_apart(self):
         rows = [row(name="a"), row("active-set", name="a", energy_N_mm=100.001), row(name="b"),
@@ -168,7 +178,8 @@ class Summaries(unittest.TestCase):
 
     def test_a_report_renders_both_ways(self):
         rows = [row(name=f"{n}", nodes=n, solve_s=n / 1e3) for n in (80, 160)] + [row(status="invalid", reason="a | b")]
-        made = report.summarise(rows, "ipopt", lambda first, second: 0.0, summary.unmet(rows), len(rows), (2, [["x", "bad"]]))
+        made = report.summarise(rows, "ipopt", lambda first, second: 0.0, summary.unmet(rows), len(rows),
+                                (2, [["x", "bad"]]))
         self.assertIn("invalid: a | b", made.text())
         self.assertIn("| A | ipopt | 3 | 2 | 1 |", made.text(markdown=True))
         self.assertIn("a \\| b", made.text(markdown=True))
@@ -191,7 +202,8 @@ class Expectations(unittest.TestCase):
         self.assertEqual(self.missed(row(grid="B", status="invalid", crossings=1)), ["converged", "not-tunnelled"])
 
     def test_peak_of_two_meshes(self):
-        coarse, fine = row(grid="B", nodes=200, peak_displacement_mm=10.0), row(grid="B", nodes=800, peak_displacement_mm=10.2)
+        coarse = row(grid="B", nodes=200, peak_displacement_mm=10.0)
+        fine = row(grid="B", nodes=800, peak_displacement_mm=10.2)
         self.assertEqual(self.missed(coarse, fine), ["peak"])
         fine["peak_displacement_mm"] = 10.05
         self.assertEqual(self.missed(coarse, fine), [])
@@ -201,7 +213,8 @@ class Expectations(unittest.TestCase):
                                      row(grid="C", vessel="bending", status="stalled")), [])
 
     def test_options(self):
-        self.assertEqual(summary.parse_expectations(["converged", "iterations=40"]), {"converged": None, "iterations": 40.0})
+        self.assertEqual(summary.parse_expectations(["converged", "iterations=40"]),
+                         {"converged": None, "iterations": 40.0})
         self.assertEqual(self.missed(row(iterations=41), iterations=40.0), ["iterations"])
         for wrong, said in (("convergent", "unknown expectation 'convergent'"), ("iterations", "iterations=NUMBER"),
                             ("converged=1", "expected 'converged'"), ("iterations=many", "iterations=NUMBER")):
@@ -226,7 +239,8 @@ pathlib.Path(sys.argv[sys.argv.index("--out") + 1]).write_text(json.dumps(docume
 DOCUMENT = {"status": "converged", "reason": "", "energy": {"total": 7.0},
             "solver": {"iterations": 9, "factorizations": 10, "epochs": 1, "evaluations": 11,
                        "seconds": {"solve": 0.5, "total": 0.6}},
-            "certificate": {"second_order": None, "weakly_active": [], "stationarity": 1e-9, "crossings": [], "folds": []},
+            "certificate": {"second_order": None, "weakly_active": [], "stationarity": 1e-9, "crossings": [],
+                            "folds": []},
             "quantities": {"peak_displacement_mm": 3.0}, "curves": [], "provenance": {"plugins": []}}
 
 
@@ -300,7 +314,8 @@ class Running(unittest.TestCase):
 
     def test_recheck_names_what_does_not_hold(self):
         program = self.folder / "recheck"
-        program.write_text(f"#!{sys.executable}\nimport sys\nprint('said')\nsys.exit(any('bad' in f for f in sys.argv[1:]))\n")
+        program.write_text(f"#!{sys.executable}\nimport sys\nprint('said')\n"
+                           "sys.exit(any('bad' in file for file in sys.argv[1:]))\n")
         program.chmod(0o755)
         rows = [row(result_file=f"/runs/ipopt/{name}.json") for name in ("good", "bad", "fine")] + [row()]
         held, fallen = grid.recheck(str(program), rows)
@@ -309,7 +324,8 @@ class Running(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    outcome = unittest.TextTestRunner(verbosity=1).run(unittest.defaultTestLoader.loadTestsFromModule(sys.modules[__name__]))
+    tests = unittest.defaultTestLoader.loadTestsFromModule(sys.modules[__name__])
+    outcome = unittest.TextTestRunner().run(tests)
     wrong = len(outcome.failures) + len(outcome.errors)
     print(f"{outcome.testsRun - wrong} passed, {wrong} failed")
     sys.exit(1 if wrong else 0)
