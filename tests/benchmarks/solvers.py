@@ -2,8 +2,8 @@
 
 Arguments: the command, and optionally the number of repetitions (5). A run that takes minutes is not repeated (the
 column "runs" says how many there were), and none goes on for longer than the time limit: a factor against such a run
-is a lower bound. Solvers that are not installed are left out, visibly, as is the real artery where BOWSTRING_DATA is not
-set."""
+is a lower bound. Solvers that are not installed are left out, visibly, as is the real artery where BOWSTRING_DATA is
+not set."""
 
 import json
 import os
@@ -29,7 +29,7 @@ CASES = (("planar, EI 65, T 10, N = 80", scenes.make("A", "planar", 80, 65, 10))
          ("real artery, EI 4857, T 10, N = 200", scenes.make("B", "artery", 200, 4857, 10)))
 COLUMNS = ("scene", "solver", "status", "iterations", "factorizations", "runs", "solve, ms", "process, ms",
            "ms per iteration", "of which assembly", "of which linear algebra", "peak memory, MB", "energy, N mm",
-           "against")
+           f"{SOLVERS[-1]}'s solve time over this")
 
 
 def run(bowstring, scene, solver):
@@ -83,7 +83,7 @@ def rows(name, runs, reference):
     for solver, (document, seconds, process, memory) in told.items():
         solve, said = seconds["solve"], document["solver"]
         compared = solver != reference and reference in told
-        against = f"{told[reference][1]['solve'] / solve:.1f} × faster" if compared else ""
+        against = f"{told[reference][1]['solve'] / solve:.3g}" if compared else ""
         if compared and told[reference][0]["status"] != "converged":
             against = "at least " + against
         yield [name, solver, document["status"], said["iterations"], said["factorizations"] or "–", len(runs[solver]),

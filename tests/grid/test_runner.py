@@ -80,8 +80,8 @@ class Rows(unittest.TestCase):
                     "solver": {"iterations": 9, "factorizations": None, "epochs": 1, "evaluations": 11,
                                "seconds": {"solve": 0.5, "total": 0.6, "evaluation": 0.1, "factorization": None}},
                     "certificate": {"second_order": None, "weakly_active": [4], "stationarity": 1e-9,
-                                    "rounding_floor_N": 0.0, "max_penetration_mm": 0.0, "max_penetration_dense_mm": 0.01,
-                                    "min_stretch": 0.9,
+                                    "rounding_floor_N": 0.0, "max_penetration_mm": 0.0,
+                                    "max_penetration_dense_mm": 0.01, "min_stretch": 0.9,
                                     "crossings": [], "folds": ["there"]},
                     "quantities": {"peak_displacement_mm": 3.0},
                     "provenance": {"plugins": [{"kind": "solver", "name": "ipopt", "sha256": "ab"}]}}
