@@ -279,6 +279,7 @@ def run(asked):
 
 def main(arguments):
     asked = parse(arguments)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # the processes are of other sessions: end them too
     try:
         return run(asked)
     except (WrongInput, ValueError) as error:
