@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 #include "plugins/sdk/guard.hpp"
@@ -17,9 +16,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_slack = 1e-2;  // mm, of a row at a cold start
 constexpr double bound_push = 1e-2;   // of its size (at least 1): how far inside its bound an unknown starts
 constexpr double rows_of_first_barrier = 100.0;
-double env(const char* n, double d) { const char* v = std::getenv(n); return v ? std::atof(v) : d; }
-const double barrier_factor = env("BF", 0.2), barrier_power = env("BP", 1.5);
-const double subproblem = env("SUB", 10.0), subx = env("SUBX", 1.0);         // errors of a solved subproblem, in units of the barrier
+constexpr double barrier_factor = 0.05, barrier_power = 1.7;
+constexpr double subproblem = 30.0;         // errors of a solved subproblem, in units of the barrier
 constexpr double boundary = 0.99;           // share of the way to a bound that a step may go
 constexpr double multiplier_spread = 1e10;  // of z s against μ
 constexpr int refinements = 3;
@@ -45,7 +43,7 @@ void BarrierMethod::set_up(Span<const double> start_multipliers) {
   bounds_ = sides_of_unknowns(problem_);
   equalities_ = equality_rows(problem_);
   row_share_ = std::min(1.0, rows_of_first_barrier / std::max<double>(1.0, static_cast<double>(sides_.size())));
-  barrier_ = env("B0", settings_.first_barrier);
+  barrier_ = settings_.first_barrier;
   multipliers_.assign(at(problem_.rows()), 0.0);
   if (!start_multipliers.empty()) std::copy(start_multipliers.begin(), start_multipliers.end(), multipliers_.begin());
   const double mu = barrier_of_row();
@@ -359,8 +357,8 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
     for (;;) {
       const double mu = barrier_of_row();
       const Errors now = errors(mu);
-      const double loose = subx > 0 ? mu : barrier_;
-      if (std::max(now.stationarity, now.violation) > subproblem * loose || now.complementarity > subproblem * mu) break;
+      if (std::max(now.stationarity, now.violation) > subproblem * barrier_) break;
+      if (now.complementarity > subproblem * mu) break;
       if (settings_.hand_over_barrier > 0.0 && barrier_ <= settings_.hand_over_barrier) {
         return finish({Claim::optimal, "handed over"});
       }
