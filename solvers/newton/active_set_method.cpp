@@ -14,9 +14,9 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// An active row is condensed with a softness below the contact's own compliance at the scale of the mesh, and refined
-// until it holds exactly; still, 1/softness must leave the softest directions their digits.
-constexpr double softness_of_stiffest = 1e-2, least_softness = 1e-11, largest_softness = 1e-6;  // mm/N
+// An active row gives way by its softness times the change of its force: a proximal step in the multipliers, which
+// keeps rows apart that say nearly the same (a chord's and its nodes'), and whose error vanishes with the change. mm/N
+constexpr double first_softness = 1e-5, softening = 0.1, last_softness = 1e-7;
 constexpr double activity = 1.0;  // N/mm: a row is taken as active where its force exceeds that times its distance
 constexpr int most_changes_of_set = 6;  // at one point
 constexpr int refinements = 6;
@@ -34,7 +34,6 @@ ActiveSetMethod::ActiveSetMethod(Point& point, Progress& progress)
   equalities_ = equality_rows(problem_);
   active_.assign(sides_.size(), 0);
   softness_.assign(at(problem_.rows()), infinity);
-  exactness_.assign(at(problem_.rows()), 0.0);
   right_a_.resize(at(problem_.unknowns()));
   right_b_.resize(at(problem_.rows()));
   delta_.resize(at(problem_.unknowns()));
@@ -78,20 +77,9 @@ ActiveSetMethod::Errors ActiveSetMethod::errors(const std::vector<double>& multi
   return out;
 }
 
-double ActiveSetMethod::softness_of_active() const noexcept {
-  const SparsityPattern pattern = problem_.hessian_pattern();
-  const Span<const double> scale = problem_.stationarity_scale();
-  double stiffest = 0.0;
-  for (int u = 0; u < problem_.unknowns(); ++u) {
-    stiffest = std::max(stiffest, std::fabs(point_.hessian[at(pattern.begin[at(u)])]) / (scale[at(u)] * scale[at(u)]));
-  }
-  return stiffest > 0.0 ? std::clamp(softness_of_stiffest / stiffest, least_softness, largest_softness)
-                        : largest_softness;
-}
-
 bool ActiveSetMethod::solve(const std::vector<double>& multipliers) {
   const auto start = std::chrono::steady_clock::now();
-  const double softness = softness_of_active();
+  const double softness = std::max(last_softness, first_softness * std::pow(softening, steps_));
   std::fill(right_b_.begin(), right_b_.end(), 0.0);
   for (const int r : equalities_) right_b_[at(r)] = problem_.row_lower()[at(r)] - point_.rows[at(r)];
   for (const Side& side : sides_) softness_[at(side.index)] = infinity;
@@ -109,7 +97,7 @@ bool ActiveSetMethod::solve(const std::vector<double>& multipliers) {
   const kkt::KktSystem::Outcome outcome = system_.factor(values);
   ++progress_.result().factorizations;
   const bool good = outcome.exists && outcome.saddle_directions == 0;
-  if (good) system_.solve(right_a_, right_b_, exactness_, refinements, delta_, change_);
+  if (good) system_.solve(right_a_, right_b_, {}, refinements, delta_, change_);
   progress_.result().factorization_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return good;
@@ -215,6 +203,7 @@ Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
     if (!step(multipliers, length)) return give_up("the step guard stopped the step");
     if (!accept()) return give_up("an accepted point could not be evaluated");
     settled = length == 1.0;
+    ++steps_;
   }
 }
 

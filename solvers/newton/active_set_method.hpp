@@ -25,9 +25,8 @@ class ActiveSetMethod {
   Ending run(std::vector<double>& multipliers);
   bool interrupted() const noexcept { return interrupted_; }
 
-  /// The system at the result, its active rows exact: what a solver lends.
+  /// The system at the result, rows that are not active off: what a solver lends.
   kkt::KktSystem& system() noexcept { return system_; }
-  const std::vector<double>& exactness() const noexcept { return exactness_; }
 
  private:
   struct Errors {
@@ -37,7 +36,6 @@ class ActiveSetMethod {
   void choose_active(const std::vector<double>& multipliers);
   void keep_active_forces(std::vector<double>& multipliers) const;
   Errors errors(const std::vector<double>& multipliers);
-  double softness_of_active() const noexcept;
   /// Solves for the step; false: the system has no positive curvature on the active rows' null space.
   bool solve(const std::vector<double>& multipliers);
   int update_active(const std::vector<double>& multipliers);
@@ -53,7 +51,8 @@ class ActiveSetMethod {
   std::vector<Side> sides_, bounds_;
   std::vector<int> equalities_;
   std::vector<char> active_;  // per side
-  std::vector<double> softness_, exactness_, right_a_, right_b_, delta_, change_, stationarity_, trial_q_, trial_rows_;
+  std::vector<double> softness_, right_a_, right_b_, delta_, change_, stationarity_, trial_q_, trial_rows_;
+  int steps_ = 0;
   bool interrupted_ = false;
 };
 
