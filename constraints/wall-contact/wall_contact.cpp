@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -84,9 +85,9 @@ class WallContact final : public Constraint {
       wire_radius_.assign(static_cast<std::size_t>(wire_.nodes), 0.0);
       if (scene.radius[0] != nullptr) wire_radius_.assign(scene.radius[0], scene.radius[0] + wire_.nodes);
       segments_ = window_.segments(scene);
-      const std::vector<double> sigma = first_places(scene);
-      measure_clearance(sigma);
-      make_rows(sigma);
+      first_places_ = first_places(scene);
+      measure_clearance(first_places_);
+      make_rows(first_places_, wall_of(vessel_.start), wire_.start);
       describe(out);
       out.inside_lumen = !outside_;
       warn(out);
@@ -173,6 +174,22 @@ class WallContact final : public Constraint {
         if (changes(row)) row.midway = !row.midway;
       }
       forget();
+      describe(out);
+    });
+  }
+
+  Status bind(const PlaceTables& at, RowDeclaration& out) noexcept override {
+    return guard([&] {
+      const Wall wall = wall_at(at);
+      const double* wire = at.table(wire_.index, Site::node);
+      if (discretisation == Discretisation::same_index) {
+        make_rows(first_places_, wall, wire);
+      } else {
+        std::vector<double> radius = wire_radius_;
+        if (outside_) std::transform(radius.begin(), radius.end(), radius.begin(), std::negate<>());
+        make_rows(contact::places_at(wire_, wall.centerline, wire, radius.data(), first_places_), wall, wire);
+        for (Row& row : rows_) settle(row, wall, wire);
+      }
       describe(out);
     });
   }
@@ -282,20 +299,21 @@ class WallContact final : public Constraint {
   }
 
   /// Rows at every place that may carry one, in order along the wire, each segment's after its first node's.
-  void make_rows(const std::vector<double>& sigma) {
+  /// `sigma`: where each node is bound to, at the state of `wall` and `wire`.
+  void make_rows(const std::vector<double>& sigma, const Wall& wall, const double* wire) {
     const int per_segment = stations();
     rows_.clear();
     for (int i = 0; i < wire_.nodes; ++i) {
-      if (!position_held(wire_, i)) add_row(i, 1, 0.0, sigma);
+      if (!position_held(wire_, i)) add_row(i, 1, 0.0, sigma, wall, wire);
       if (i == wire_.nodes - 1 || (position_held(wire_, i) && position_held(wire_, i + 1))) continue;
-      for (int k = 1; k < per_segment; ++k) add_row(i, 2, static_cast<double>(k) / per_segment, sigma);
-      if (per_segment == 0) add_row(i, 2, 0.5, sigma);
+      for (int k = 1; k < per_segment; ++k) add_row(i, 2, static_cast<double>(k) / per_segment, sigma, wall, wire);
+      if (per_segment == 0) add_row(i, 2, 0.5, sigma, wall, wire);
     }
     found_.assign(rows_.size(), {});
   }
 
-  void add_row(int node, int nodes, double t, const std::vector<double>& sigma) {
-    const Wall wall = wall_of(vessel_.start);
+  void add_row(int node, int nodes, double t, const std::vector<double>& sigma, const Wall& wall,
+               const double* wire) {
     const auto first = static_cast<std::size_t>(node);
     Row row;
     row.node = node;
@@ -309,10 +327,20 @@ class WallContact final : public Constraint {
     row.end_sigma[0] = row.extremal ? sigma[first] : row.sigma;
     row.end_sigma[1] = row.extremal ? sigma[first + 1] : row.sigma;
     cover(row);
-    refer_to(row, wall, wire_.start, row.window);
+    refer_to(row, wall, wire, row.window);
     cover(row);
     row.midway = changes(row);
     rows_.push_back(row);
+  }
+
+  /// Moves a row's window until its closest point lies within: a place between two nodes, or on a polyline, is not
+  /// where the nodes on the spline are.
+  void settle(Row& row, const Wall& wall, const double* wire) const {
+    for (int i = 0; i < vessel_.nodes; ++i) {
+      if (locate(row, wall, wire).closest.location != contact::Location::window_edge) return;
+      refer_to(row, wall, wire);
+      cover(row);
+    }
   }
 
   std::vector<double> first_places(const ConstraintScene& scene) const {
@@ -401,6 +429,7 @@ class WallContact final : public Constraint {
   CurveView wire_, vessel_;
   int dimension_ = 3;
   std::vector<double> radius_, wire_radius_;
+  std::vector<double> first_places_;  // per wire node: σ at the start of the scene
   double smallest_clearance_ = 0.0;
   std::vector<Row> rows_;
   mutable std::vector<Found> found_;  // per row

@@ -37,9 +37,10 @@ struct RowOrigin {
 /// summed in a fixed order.
 class Assembly final : public Problem, public PlaceTables {
  public:
-  /// The scene outlives the assembly. Throws std::runtime_error naming the curve or constraint that fails at State 1
+  /// The scene outlives the assembly. `start`: the coordinates that rows are bound at; empty: the scene's own start,
+  /// which they have been declared at. Throws std::runtime_error naming the curve or constraint that fails at State 1
   /// or at the start.
-  explicit Assembly(Scene& scene);
+  explicit Assembly(Scene& scene, Span<const double> start = {});
 
   const ProblemSummary& summary() const noexcept override { return summary_; }
   int unknowns() const noexcept override { return free_count_; }
@@ -109,6 +110,10 @@ class Assembly final : public Problem, public PlaceTables {
   void number_unknowns();
   void make_tables();
   void make_rows();
+  /// Lets every constraint choose its rows' places anew.
+  using Binding = Status (*)(Constraint&, const PlaceTables&, RowDeclaration&);
+  Status place_rows(Binding bind);
+  void place_rows_at(Span<const double> q);
   Status bind_rows() noexcept;
   void make_patterns();
   /// A row of a closure site: its entries begin at `first` of the table's Jacobian and stand at `position`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/contact/crossing.hpp"
 #include "core/contact/gap.hpp"
 
 namespace bowstring::contact {
@@ -31,6 +32,25 @@ std::vector<double> first_places(const ConstraintScene& scene, const Centerline&
   } else {
     bind_along(centerline, wire.start, wire.nodes, sigma.data());
   }
+  return sigma;
+}
+
+std::vector<double> places_at(const CurveView& wire, const Centerline& vessel, const double* points,
+                              const double* radius, const std::vector<double>& first) {
+  const auto nodes = static_cast<std::size_t>(wire.nodes), dimension = static_cast<std::size_t>(vessel.dimension);
+  const bool from_last = position_held(wire, wire.nodes - 1) && !position_held(wire, 0);
+  std::vector<double> x(points, points + nodes * dimension), r;
+  if (radius != nullptr) r.assign(radius, radius + nodes);
+  if (from_last) {
+    for (std::size_t i = 0; i < nodes; ++i) {
+      std::copy_n(points + (nodes - 1 - i) * dimension, dimension, x.begin() + static_cast<long>(i * dimension));
+    }
+    std::reverse(r.begin(), r.end());
+  }
+  std::vector<double> sigma(nodes);
+  const WirePolyline polyline{wire.nodes, x.data(), r.empty() ? nullptr : r.data()};
+  follow_nodes(vessel, polyline, from_last ? first.back() : first.front(), sigma.data());
+  if (from_last) std::reverse(sigma.begin(), sigma.end());
   return sigma;
 }
 
