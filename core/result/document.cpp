@@ -51,23 +51,11 @@ Json provenance(const Session& session, const Registry& registry) {
                        {"sha256", origin.sha256},
                        {"abi_tag", origin.abi_tag}});
   }
-  return {{"version", bowstring_version}, {"interface_version", interface_version}, {"plugins", plugins}};
-}
-
-const char* manifold_name(Manifold manifold) {
-  switch (manifold) {
-    case Manifold::real:
-      return "R";
-    case Manifold::vector:
-      return "R^n";
-    case Manifold::circle:
-      return "S1";
-    case Manifold::direction:
-      return "S2";
-    case Manifold::rotation:
-      break;
+  Json out = {{"version", bowstring_version}, {"interface_version", interface_version}, {"plugins", plugins}};
+  if (const StartTable& start = session.composition.start; start.state != nullptr) {
+    out["start"] = {{"file", start.from}, {"sha256", start.state->sha256}};
   }
-  return "SO3";
+  return out;
 }
 
 Json problem(const Session& session) {
@@ -237,7 +225,7 @@ std::string result_document(const Session& session, const Solution& solution, co
   for (const CurveRecord& record : readings.curves) curves.push_back(curve(*scene.curves[at(record.curve)], record));
 
   Json document;
-  document["format"] = "bowstring.result/1";
+  document["format"] = result_format;
   document["status"] = verdict_name(solution.certificate.verdict);
   document["reason"] = solution.certificate.reason;
   document["warnings"] = solution.warnings;

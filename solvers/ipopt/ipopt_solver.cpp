@@ -24,6 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double unbounded = 2e19;  // what Ipopt takes for infinity
 constexpr double first_barrier = 0.1;
+constexpr double warm_barrier = 1e-4;  // where multipliers are given: the start is near a solution
 
 constexpr ParameterDeclaration schema[] = {
     backend::tolerance_key,
@@ -392,8 +393,14 @@ class IpoptSolver final : public Solver {
     out.q.assign(start.begin(), start.end());
     const backend::Guarded guarded(problem, settings_.guard);
     Multipliers multipliers;
-    double barrier = first_barrier;
-    for (bool warm = false;; warm = true) {
+    bool warm = !context.multipliers.empty() && context.multipliers.size() == static_cast<std::size_t>(problem.rows());
+    double barrier = warm ? warm_barrier : first_barrier;
+    if (warm) {
+      multipliers.rows.assign(context.multipliers.begin(), context.multipliers.end());
+      multipliers.lower.assign(static_cast<std::size_t>(problem.unknowns()), 0.0);
+      multipliers.upper = multipliers.lower;
+    }
+    for (;; warm = true) {
       const std::unique_ptr<EuclideanProblem> chart = problem.chart(out.q);
       Ipopt::SmartPtr<ChartProgram> program = new ChartProgram(problem, *chart, settings_, context, out, begin);
       program->multipliers = multipliers;
