@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double unbounded = 2e19;  // what Ipopt takes for infinity
 constexpr double first_barrier = 0.1;
-constexpr double warm_barrier = 1e-4;  // where multipliers are given: the start is near a solution
+constexpr double least_warm_barrier = 1e-6;  // of a start with multipliers: a new parameter may have moved the solution
 
 constexpr ParameterDeclaration schema[] = {
     backend::tolerance_key,
@@ -393,9 +393,11 @@ class IpoptSolver final : public Solver {
     out.q.assign(start.begin(), start.end());
     const backend::Guarded guarded(problem, settings_.guard);
     Multipliers multipliers;
-    bool warm = !context.multipliers.empty() && context.multipliers.size() == static_cast<std::size_t>(problem.rows());
-    double barrier = warm ? warm_barrier : first_barrier;
-    if (warm) {
+    double barrier = fitting_barrier(problem, start, context.multipliers);
+    bool warm = barrier > 0.0;
+    if (!warm) {
+      barrier = first_barrier;
+    } else {
       multipliers.rows.assign(context.multipliers.begin(), context.multipliers.end());
       multipliers.lower.assign(static_cast<std::size_t>(problem.unknowns()), 0.0);
       multipliers.upper = multipliers.lower;
@@ -423,6 +425,30 @@ class IpoptSolver final : public Solver {
       conclude(*program, status, out);
       return;
     }
+  }
+
+  /// The barrier parameter that a start with multipliers belongs to: the mean of multiplier times distance from the
+  /// bound, which it is on Ipopt's central path. 0 where there are no multipliers to begin with, or none that a barrier
+  /// belongs to.
+  static double fitting_barrier(Problem& problem, Span<const double> start, Span<const double> multipliers) {
+    const auto rows = static_cast<std::size_t>(problem.rows());
+    if (rows == 0 || multipliers.size() != rows) return 0.0;
+    std::vector<double> residual(rows);
+    ProblemEvaluation evaluation;
+    evaluation.rows = residual;
+    if (!problem.evaluate(start, evaluation).ok()) return 0.0;
+    double sum = 0.0, largest = 0.0;
+    int inequalities = 0;
+    for (std::size_t r = 0; r < rows; ++r) {
+      const double lower = problem.row_lower()[r], upper = problem.row_upper()[r];
+      if (lower == upper) continue;
+      const double distance = std::fmin(std::fabs(residual[r] - lower), std::fabs(upper - residual[r]));
+      sum += std::fabs(multipliers[r]) * distance;
+      largest = std::fmax(largest, std::fabs(multipliers[r]));
+      ++inequalities;
+    }
+    if (inequalities > 0 && largest == 0.0) return 0.0;
+    return std::clamp(inequalities > 0 ? sum / inequalities : 0.0, least_warm_barrier, first_barrier);
   }
 
   static void conclude(const ChartProgram& program, Ipopt::ApplicationReturnStatus status, SolverResult& out) {
