@@ -112,6 +112,7 @@ std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& re
     return nullptr;
   }
   if (table.state != nullptr) {
+    start.origin = {table.from, table.state->sha256};
     start.multipliers =
         recorded_multipliers(session->assembly->row_origins(), *table.state, table.name, start.warnings);
   }
@@ -257,6 +258,7 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
   } catch (const std::exception& error) {
     solution = unsolved(session, first, error.what());
   }
+  if (!from.q.empty()) solution.start = from.origin;
   std::vector<std::string> warnings = session.composition.warnings;
   const auto add = [&](const std::vector<std::string>& more) {
     warnings.insert(warnings.end(), more.begin(), more.end());

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct Seconds {
 /// A composition made ready to be solved.
 struct Session {
   Composition composition;
-  std::unique_ptr<Scene> scene;
+  std::shared_ptr<Scene> scene;  ///< its curves and the labels of its energies stay as they are from solve to solve
   Owned<Solver> solver{nullptr, nullptr};
   Owned<Enforcement> enforcement{nullptr, nullptr};
   std::unique_ptr<Assembly> assembly;
@@ -39,6 +40,7 @@ struct Solution {
   SolverResult solver;
   Certificate certificate;
   bool estimated_multipliers = false;  ///< the solver gave none
+  std::optional<StartOrigin> start;    ///< empty: the composition's own
   std::vector<std::string> warnings;
 };
 

@@ -8,11 +8,18 @@
 
 namespace bowstring {
 
+/// Which document a start was read from.
+struct StartOrigin {
+  std::string file;    ///< absolute; "": none, the state came from memory
+  std::string sha256;  ///< of the document; "": not known
+};
+
 /// Where a solver begins.
 struct Start {
   std::vector<double> q;              ///< coordinates; empty: the scene's own start
   std::vector<double> multipliers;    ///< one per row, or empty
   std::vector<std::string> warnings;  ///< what of a recorded state was not taken
+  StartOrigin origin;
 };
 
 /// The coordinates of a recorded state for this scene. What the scene holds stays where the scene's own start has it:
