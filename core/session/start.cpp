@@ -54,6 +54,14 @@ bool take_field(const FieldDeclaration& field, const NamedNumbers& numbers, cons
     return flaw(" has " + std::to_string(numbers.values.size()) + " numbers",
                 std::to_string(field.count * each) + ", as in this scene");
   }
+  const auto not_finite =
+      std::find_if(numbers.values.begin(), numbers.values.end(), [](double value) { return !std::isfinite(value); });
+  if (not_finite != numbers.values.end()) {
+    flaws.push_back(
+        {owner + " has a number that is not finite, as number " + std::to_string(not_finite - numbers.values.begin()),
+         "finite numbers", "start from a result whose state is known"});
+    return false;
+  }
   for (int i = 0; is_curved(field.manifold) && i < field.count; ++i) {
     double squared = 0.0;
     for (int k = 0; k < each; ++k) squared += numbers.values[at(i * each + k)] * numbers.values[at(i * each + k)];
