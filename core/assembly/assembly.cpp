@@ -33,7 +33,7 @@ std::uint64_t new_state() noexcept {
 
 }  // namespace
 
-Assembly::Assembly(Scene& scene, Span<const double> start) : scene_(scene) {
+Assembly::Assembly(Scene& scene, Span<const double> start, const Assembly* like) : scene_(scene) {
   number_unknowns();
   make_tables();
   q_.assign(at(scene_.coordinates), 0.0);
@@ -41,7 +41,7 @@ Assembly::Assembly(Scene& scene, Span<const double> start) : scene_(scene) {
   make_rows();
   term_energy_.assign(scene_.energies.size(), 0.0);
   make_scales();
-  make_patterns();
+  like != nullptr&& reads_like(*like) ? take_patterns(*like) : make_patterns();
 
   const std::vector<double> own = scene_.start_coordinates();
   if (Status status = accept(start.empty() ? own : start); !status.ok()) throw std::runtime_error(status.text);
@@ -55,9 +55,8 @@ void Assembly::place_rows_at(Span<const double> q) {
   Status status = update_places(q);
   if (status.ok()) status = update_idle_places();
   if (status.ok()) {
-    status = place_rows([](Constraint& constraint, const PlaceTables& at, RowDeclaration& out) {
-      return constraint.bind(at, out);
-    });
+    status = place_rows(
+        [](Constraint& constraint, const PlaceTables& at, RowDeclaration& out) { return constraint.bind(at, out); });
   }
   if (!status.ok()) throw std::runtime_error(status.text);
   has_places_ = false;  // rows may read sites that nothing has read before

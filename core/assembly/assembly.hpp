@@ -39,8 +39,8 @@ class Assembly final : public Problem, public PlaceTables {
  public:
   /// The scene outlives the assembly. `start`: the coordinates that rows are bound at; empty: the scene's own start,
   /// which they have been declared at. Throws std::runtime_error naming the curve or constraint that fails at State 1
-  /// or at the start.
-  explicit Assembly(Scene& scene, Span<const double> start = {});
+  /// or at the start. `like`: another assembly, whose patterns are taken over where its rows read the same places.
+  explicit Assembly(Scene& scene, Span<const double> start = {}, const Assembly* like = nullptr);
 
   const ProblemSummary& summary() const noexcept override { return summary_; }
   int unknowns() const noexcept override { return free_count_; }
@@ -116,6 +116,8 @@ class Assembly final : public Problem, public PlaceTables {
   void place_rows_at(Span<const double> q);
   Status bind_rows() noexcept;
   void make_patterns();
+  bool reads_like(const Assembly& other) const noexcept;
+  void take_patterns(const Assembly& other);
   /// A row of a closure site: its entries begin at `first` of the table's Jacobian and stand at `position`.
   void note_closure_row(int table, int first, const int* position);
   void find_local_rows();

@@ -51,6 +51,9 @@ struct ConstraintRows {
   void locate(const BlockLayout& layout, const HessianPattern& hessian_pattern,
               const JacobianPattern& jacobian_pattern);
 
+  /// Those that `locate` has found for the same rows.
+  void take_positions(const ConstraintRows& other);
+
   /// Whether a constraint may say so of a row.
   bool fits(int row, const RowSupport& support) const noexcept;
   /// The first row with a derivative that is not finite; −1: none.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int dense_samples = 16;
 constexpr int check_samples = 20;
-constexpr int binding_samples = 8;
+constexpr int binding_samples = 4;
 constexpr double slide_limit = 10.0;  // how far σ may move per step of the wire, as lengths
 
 double chord_length(const WirePolyline& wire, int segment, int dimension) noexcept {

@@ -149,7 +149,7 @@ void bind_anew(Session& session, const std::vector<double>& q) {
       before.back().first = std::move(use.constraint);
       renew(use, session.composition.constraints[next++].component);
     }
-    session.assembly = std::make_unique<Assembly>(scene, q);
+    session.assembly = std::make_unique<Assembly>(scene, q, session.assembly.get());
   } catch (...) {
     for (std::size_t c = 0; c < before.size(); ++c) {
       if (before[c].first != nullptr) scene.constraints[c].constraint = std::move(before[c].first);
@@ -256,6 +256,7 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
       solution = std::move(second);
     }
   } catch (const std::exception& error) {
+    bind_anew(session, {});
     solution = unsolved(session, first, error.what());
   }
   if (!from.q.empty()) solution.start = from.origin;
