@@ -176,6 +176,7 @@ class Concentric final : public Constraint {
     const contact::Centerline centerline = centerline_at(vessel_.start);
     first_places_ = contact::first_places(scene, centerline);
     places_.clear();
+    tangents_.clear();
     for (int i = 0; i < wire_.nodes; ++i) {
       if (position_held(wire_, i)) continue;
       Place place;

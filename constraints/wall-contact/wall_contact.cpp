@@ -337,8 +337,8 @@ class WallContact final : public Constraint {
   /// where the nodes on the spline are.
   void settle(Row& row, const Wall& wall, const double* wire) const {
     for (int i = 0; i < vessel_.nodes; ++i) {
-      if (locate(row, wall, wire).closest.location != contact::Location::window_edge) return;
-      refer_to(row, wall, wire);
+      if (locate(row, wall, wire, row.window).closest.location != contact::Location::window_edge) return;
+      refer_to(row, wall, wire, row.window);
       cover(row);
     }
   }

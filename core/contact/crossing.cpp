@@ -11,7 +11,6 @@ namespace {
 
 constexpr int dense_samples = 16;
 constexpr int check_samples = 20;
-constexpr int binding_samples = 4;
 constexpr double slide_limit = 10.0;  // how far σ may move per step of the wire, as lengths
 
 double chord_length(const WirePolyline& wire, int segment, int dimension) noexcept {
@@ -142,13 +141,6 @@ CrossingCheck check_crossing(const Centerline& vessel, const WirePolyline& wire,
     first = false;
   });
   return check;
-}
-
-void follow_nodes(const Centerline& vessel, const WirePolyline& wire, double start, double* sigma) noexcept {
-  follow(vessel, wire, binding_samples, start, [&](const Penetration& sample) {
-    if (sample.t == 0.0) sigma[0] = sample.vessel_coordinate;
-    if (sample.t == 1.0) sigma[sample.segment + 1] = sample.vessel_coordinate;
-  });
 }
 
 }  // namespace bowstring::contact

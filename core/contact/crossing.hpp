@@ -61,7 +61,4 @@ struct CrossingCheck {
 CrossingCheck check_crossing(const Centerline& vessel, const WirePolyline& wire,
                              std::optional<double> start = std::nullopt) noexcept;
 
-/// σ of every node of the wire, followed like the depths above; `sigma`: nodes numbers.
-void follow_nodes(const Centerline& vessel, const WirePolyline& wire, double start, double* sigma) noexcept;
-
 }  // namespace bowstring::contact

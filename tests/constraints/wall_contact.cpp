@@ -165,7 +165,8 @@ TEST_CASE("the clearance that rows are spaced by is that of the wire where it li
 
 TEST_CASE("outside: a rod lies on a strip, which pushes it away") {
   for (const char* type : {"node-wise-contact", "segment-wise-contact"}) {
-    CAPTURE(type);
+    const std::string name = type;
+    CAPTURE(name);
     const auto session = session_of_text(pressed_on_a_strip(type));
     const Solution solution = solve(*session, nullptr);
     REQUIRE(solution.certificate.verdict == Verdict::converged);
@@ -199,6 +200,45 @@ TEST_CASE("a segment whose wall bends away leaves contact to its nodes, and the 
   REQUIRE(read_solution(*session, solution, readings).ok());
   CHECK(readings.quantities.contact_force == doctest::Approx(0.57735).epsilon(0.01));
   CHECK(*solution.certificate.dense_penetration() <= 1e-6);
+}
+
+TEST_CASE("rows bound at a solved state lie where the solve has led them, whatever many segments away") {
+  for (const char* type : {"node-wise-contact", "same-index-contact", "concentric"}) {
+    const std::string name = type;
+    CAPTURE(name);
+    const auto session = session_of_file("tortuous-iliac.toml", {{"constraint.lumen.type", name}});
+    const Solution solution = solve(*session, {});
+    REQUIRE(solution.certificate.verdict == Verdict::converged);
+    const int constraint = static_cast<int>(session->scene->constraints.size()) - 1;
+    std::vector<RowReport> led, bound;
+    REQUIRE(session->assembly->report(solution.q, constraint, led).ok());
+    const int epochs = session->assembly->epochs();
+
+    session->scene->constraints.back().constraint->declare(session->scene->constraints.back().scene,
+                                                           session->scene->constraints.back().rows);
+    Assembly assembly(*session->scene, solution.q);
+    CHECK(assembly.epochs() == 1);
+    CHECK_FALSE(assembly.epoch_due());
+    REQUIRE(assembly.report(solution.q, constraint, bound).ok());
+    REQUIRE(bound.size() == led.size());
+    double slid = 0.0;
+    for (std::size_t r = 0; r < led.size(); ++r) {
+      CAPTURE(r);
+      CHECK(std::fabs(bound[r].vessel_coordinate - led[r].vessel_coordinate) < 1e-6);
+      slid = std::max(slid, std::fabs(led[r].vessel_coordinate - led[r].wire_coordinate));
+    }
+    if (name == "same-index-contact") continue;
+    CHECK(slid > 1.0);
+    CHECK(epochs > 1);
+    std::vector<double> rows(at(assembly.rows()));
+    ProblemEvaluation evaluation;
+    evaluation.rows = rows;
+    REQUIRE(assembly.evaluate(solution.q, evaluation).ok());
+    for (int r = 0; r < assembly.rows(); ++r) {
+      CHECK(rows[at(r)] <= assembly.row_upper()[at(r)] + 1e-8);
+      CHECK(rows[at(r)] >= assembly.row_lower()[at(r)] - 1e-8);
+    }
+  }
 }
 
 }  // namespace bowstring::testing
