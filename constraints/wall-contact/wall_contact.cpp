@@ -312,8 +312,7 @@ class WallContact final : public Constraint {
     found_.assign(rows_.size(), {});
   }
 
-  void add_row(int node, int nodes, double t, const std::vector<double>& sigma, const Wall& wall,
-               const double* wire) {
+  void add_row(int node, int nodes, double t, const std::vector<double>& sigma, const Wall& wall, const double* wire) {
     const auto first = static_cast<std::size_t>(node);
     Row row;
     row.node = node;

@@ -41,7 +41,11 @@ Assembly::Assembly(Scene& scene, Span<const double> start, const Assembly* like)
   make_rows();
   term_energy_.assign(scene_.energies.size(), 0.0);
   make_scales();
-  like != nullptr&& reads_like(*like) ? take_patterns(*like) : make_patterns();
+  if (like != nullptr && reads_like(*like)) {
+    take_patterns(*like);
+  } else {
+    make_patterns();
+  }
 
   const std::vector<double> own = scene_.start_coordinates();
   if (Status status = accept(start.empty() ? own : start); !status.ok()) throw std::runtime_error(status.text);
