@@ -298,6 +298,10 @@ void Assembly::take_patterns(const Assembly& other) {
   closure_runs_ = other.closure_runs_;
   closure_in_run_ = other.closure_in_run_;
   order_ = other.order_;
+  border_ = other.border_;
+  whole_curve_ = other.whole_curve_;
+  local_rows_ = other.local_rows_;
+  local_unknowns_ = other.local_unknowns_;
   for (std::size_t t = 0; t < tables_.size(); ++t) {
     tables_[t].hessian_position = other.tables_[t].hessian_position;
     tables_[t].all_free = other.tables_[t].all_free;
