@@ -38,11 +38,12 @@ class ActiveSetMethod {
   Errors errors(const std::vector<double>& multipliers);
   /// Solves for the step; false: the system has no positive curvature on the active rows' null space.
   bool solve(const std::vector<double>& multipliers);
+  void solve_again(const std::vector<double>& multipliers, int most_refinements);
   int update_active(const std::vector<double>& multipliers);
   bool direction(std::vector<double>& multipliers);
   double longest_step() const;
   bool step(std::vector<double>& multipliers, double& length);
-  bool accept();
+  bool accept(bool& new_epoch);
 
   Point& point_;
   Progress& progress_;
@@ -52,7 +53,7 @@ class ActiveSetMethod {
   std::vector<int> equalities_;
   std::vector<char> active_;  // per side
   std::vector<double> softness_, right_a_, right_b_, delta_, change_, stationarity_, trial_q_, trial_rows_;
-  int steps_ = 0;
+  int steps_ = 0, changes_ = 0;
   bool interrupted_ = false;
 };
 
