@@ -22,14 +22,17 @@ constexpr double refined = 1e-9;         // relative residual that needs no furt
 
 }  // namespace
 
-void KktSystem::analyse(const Problem& problem, Span<const double> jacobian) {
+void KktSystem::analyse(const Problem& problem, Span<const double> jacobian, Span<const char> held) {
   n_ = problem.unknowns();
   m_ = problem.rows();
   hessian_ = problem.hessian_pattern();
   jacobian_ = problem.jacobian_pattern();
   scale_.assign(problem.stationarity_scale().begin(), problem.stationarity_scale().end());
   exact_.resize(at(m_));
-  for (int r = 0; r < m_; ++r) exact_[at(r)] = problem.row_lower()[at(r)] == problem.row_upper()[at(r)] ? 1 : 0;
+  for (int r = 0; r < m_; ++r) {
+    const bool equality = problem.row_lower()[at(r)] == problem.row_upper()[at(r)];
+    exact_[at(r)] = equality || (!held.empty() && held[at(r)] != 0) ? 1 : 0;
+  }
   // Places' own rows and unknowns outlive epochs, and so does their elimination while it is sound.
   if (!local_.fits(problem) || !local_.update(jacobian)) local_.analyse(problem, jacobian);
   number_slots(problem);
