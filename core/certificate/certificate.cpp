@@ -252,7 +252,7 @@ Status certify(Assembly& assembly, Span<const double> q, Span<const double> mult
   if (out.first_order) {
     judge_second_order(assembly, q, multipliers, out.stationarity, out.second_order);
   } else {
-    out.second_order.reason = "the first-order conditions are not met: " + missed;
+    out.second_order.reason = "the first-order conditions are not met";
   }
   conclude(thresholds, claim, claim_reason, missed, out);
   return {};

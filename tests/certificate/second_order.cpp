@@ -415,7 +415,8 @@ TEST_CASE("away from an equilibrium nothing is judged, and that is said") {
   const SolvedScene limited = solved(session_of_text(contact_text(contact_scene(2), "max-iterations = 2")));
   const SecondOrder& second = limited.solution.certificate.second_order;
   CHECK(second.curvature == Curvature::unjudged);
-  CHECK(contains(second.reason, "the first-order conditions are not met: "));
+  CHECK(second.reason == "the first-order conditions are not met");
+  CHECK(curvature_name(second.curvature) == nullptr);
 }
 
 }  // namespace bowstring::testing
