@@ -97,7 +97,7 @@ class Judge {
   Judge(Assembly& assembly, Span<const double> q, Span<const double> multipliers, double stationarity, SecondOrder& out)
       : assembly_(assembly),
         q_(q.begin(), q.end()),
-        multipliers_(multipliers),
+        multipliers_(multipliers.begin(), multipliers.end()),
         stationarity_(stationarity),
         n_(assembly.unknowns()),
         m_(assembly.rows()),
@@ -106,7 +106,6 @@ class Judge {
   void run() {
     if (n_ == 0) return conclude(Curvature::minimum, "nothing is unknown");
     if (Status status = evaluate(); !status.ok()) return conclude(Curvature::unjudged, status.text);
-    find_activity();
     hold_bounds();
     if (!make_metric()) return conclude(Curvature::unjudged, "no energy has a second derivative here");
     judge();
@@ -135,6 +134,7 @@ class Judge {
     wanted.jacobian = jacobian_;
     wanted.rows = residual_;
     if (Status status = assembly_.evaluate(q_, wanted); !status.ok()) return status;
+    find_activity();
     if (Status status = assembly_.lagrangian_hessian(q_, 1.0, multipliers_, hessian_); !status.ok()) return status;
     for (int u = 0; u < n_; ++u) {
       const int k = hessian.begin[at(u)];
@@ -149,25 +149,23 @@ class Judge {
     return {};
   }
 
+  /// What an interior point leaves on rows that carry nothing in the limit is taken off: its curvature would pass for
+  /// stiffness where nothing else holds.
   void find_activity() {
     held_.assign(at(m_), 0);
     const SparsityPattern pattern = assembly_.jacobian_pattern();
     for (int r = 0; r < m_; ++r) {
       const double lower = assembly_.row_lower()[at(r)], upper = assembly_.row_upper()[at(r)];
       if (lower == upper) continue;
+      const Activity found = activity(row_side(lower, upper, residual_[at(r)], multipliers_[at(r)]));
+      if (found == Activity::open || found == Activity::weak) multipliers_[at(r)] = 0.0;
       const auto begin = jacobian_.begin() + pattern.begin[at(r)], end = jacobian_.begin() + pattern.begin[at(r) + 1];
-      if (std::all_of(begin, end, [](double value) { return value == 0.0; })) continue;  // it holds nothing
-      switch (activity(row_side(lower, upper, residual_[at(r)], multipliers_[at(r)]))) {
-        case Activity::strong:
-          held_[at(r)] = 1;
-          ++strong_;
-          break;
-        case Activity::weak:
-        case Activity::undecided:
-          weak_.push_back(r);
-          break;
-        case Activity::open:
-          break;
+      if (found == Activity::open || std::all_of(begin, end, [](double value) { return value == 0.0; })) continue;
+      if (found == Activity::strong) {
+        held_[at(r)] = 1;
+        ++strong_;
+      } else {
+        weak_.push_back(r);
       }
     }
   }
@@ -390,8 +388,7 @@ class Judge {
   }
 
   Assembly& assembly_;
-  std::vector<double> q_;
-  Span<const double> multipliers_;
+  std::vector<double> q_, multipliers_;
   double stationarity_;
   int n_, m_, strong_ = 0;
   SecondOrder& out_;
