@@ -25,8 +25,10 @@ constexpr double little = 1e-3;           // the same, where no step was found e
 constexpr double far = 100.0;             // lengths of the scene, to where rows are linearly satisfied
 constexpr double unbounded = 1e3;         // sizes of the scene at the start
 constexpr double sign_share = 1e-5;       // of the target: a gradient that is none
+constexpr double alike = 1.0 + 1e-9;      // a row is named where it is worse than those before it
 constexpr int corrections = 2;
-constexpr int patience = 10;  // iterations without progress next to the targets
+constexpr double longest_correction = 0.5;  // of its step: beyond it another way back is tried
+constexpr int patience = 10;                // iterations without progress next to the targets
 
 double dot(Span<const double> a, Span<const double> b) {
   double sum = 0.0;
@@ -83,8 +85,7 @@ Status Method::begin(std::vector<double>& multipliers) {
   subproblem_.analyse();
   radius_ = settings_.first_radius > 0.0 ? settings_.first_radius : first_share * metric_.length();
   start_energy_ = point_.energy;
-  int farthest = -1;
-  start_extent_ = std::max(metric_.extent(problem_, point_.q, farthest), metric_.length());
+  start_extent_ = metric_.length();
   target_ = std::max(progress_.limits().tolerance, problem_.rounding_floor());
   filter_.reset(1e4 * std::max(1.0, violation(point_.rows)));
   newton_multipliers_ = multipliers.size() == m ? multipliers : std::vector<double>();
@@ -228,10 +229,11 @@ void Method::correct(const Step& step) {
   double largest = 0.0;
   double missed = misses(trial_.rows, largest);
   for (int k = 0; k < corrections && largest > 0.1 * progress_.limits().tolerance; ++k) {
-    if (step.restoring) {
+    // The way back of the step's own factors; where curvature that has just been shifted away makes that a long one,
+    // the normal step's.
+    if (!step.restoring) subproblem_.solve(no_force, off, back_, back_multipliers_);
+    if (step.restoring || !(metric_.norm(back_) <= longest_correction * step.norm)) {
       normal_.solve(no_force, off, back_, back_multipliers_);
-    } else {
-      subproblem_.solve(no_force, off, back_, back_multipliers_);
     }
     if (!(metric_.norm(back_) <= step.norm)) return;
     for (std::size_t u = 0; u < delta.size(); ++u) delta[u] += back_[u];
@@ -329,19 +331,21 @@ Status Method::take() {
 }
 
 bool Method::diverges(std::string& reason) const {
-  int farthest = -1;
-  const double extent = metric_.extent(problem_, point_.q, farthest);
+  const double extent = Metric::extent(point_.q);
   if (!(extent > unbounded * start_extent_) || !(point_.energy < start_energy_)) return false;
-  const Span<const int> order = problem_.order();
-  const auto border = order.end() - problem_.border();
-  const bool whole_curve = std::find(border, order.end(), farthest) != order.end();
+  reason = text("the energy falls without a bound: from %.6g to %.6g N mm while the scene grew from %.4g to %.4g mm",
+                start_energy_, point_.energy, start_extent_, extent);
+  // Of the real unknowns, lengths, one may be what grows.
   std::vector<double> value(at(problem_.unknowns()));
   problem_.values(point_.q, value);
-  reason = text(
-      "the energy falls without a bound: from %.6g to %.6g N mm while the scene grew from %.4g to %.4g mm; what "
-      "has grown most is unknown %d%s, now at %.4g mm",
-      start_energy_, point_.energy, start_extent_, extent, farthest,
-      whole_curve ? " (a number that a whole curve reads, such as a wire's length)" : "", value[at(farthest)]);
+  const auto longest = std::max_element(value.begin(), value.end());
+  if (longest != value.end() && *longest > 0.1 * extent) {
+    const int unknown = static_cast<int>(longest - value.begin());
+    const Span<const int> order = problem_.order();
+    const bool whole = std::find(order.end() - problem_.border(), order.end(), unknown) != order.end();
+    reason +=
+        text("; the length of %s (unknown %d) is now %.4g mm", whole ? "a sliding wire" : "an edge", unknown, *longest);
+  }
   return true;
 }
 
@@ -381,7 +385,7 @@ std::string Method::failing_rows() const {
     for (int r = group.first; r < group.first + group.count; ++r) {
       const double off = std::fabs(point_.rows[at(r)] - problem_.row_lower()[at(r)]);
       if (off > tolerance) ++count;
-      if (off > largest) largest = off, worst = r;
+      if (off > alike * largest) largest = off, worst = r;
     }
     if (count == 0) continue;
     out += text("%s%d of %d rows of '%s' fail, row %d the most, by %.4g mm", out.empty() ? "" : "; ", count,
@@ -431,7 +435,10 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
   double fraction = 0.0, best = std::numeric_limits<double>::infinity();
   int waited = 0;
   for (;;) {
-    if (!normal_.factor()) {
+    bool usable = false;
+    status = normal_.factor(usable);
+    if (!status.ok()) return finish({Claim::failed, status.text});
+    if (!usable) {
       return finish({Claim::stalled, "the rows' Jacobian has no usable factors; " + failing_rows()});
     }
     judge();

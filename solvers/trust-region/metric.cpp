@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace bowstring::trust_region {
 
@@ -17,21 +16,18 @@ void Metric::set_up(const Problem& problem, Span<const double> q) {
   problem.values(q, before);
   problem.retract(q, std::vector<double>(n, probe), moved);
   problem.values(moved, after);
-  int farthest = -1;
-  length_ = extent(problem, q, farthest);
-  // A scene without positions: the length of its edges, each of which has up to three rotations.
-  double edges = 0.0;
+  // Rotations: what edges give up for their closure, but their lengths, and whatever has a lever.
+  std::vector<char> rotation(n, 0);
+  for (const int u : problem.local_unknowns()) rotation[static_cast<std::size_t>(u)] = 1;
   for (std::size_t u = 0; u < n; ++u) {
-    if (after[u] == before[u]) edges += problem.stationarity_scale()[u] / 3.0;
+    if (problem.stationarity_scale()[u] != 1.0) rotation[u] = 1;
+    if (after[u] != before[u]) rotation[u] = 0;
   }
-  length_ = std::max(length_, edges);
+  length_ = extent(q);
   if (!(length_ > 0.0)) length_ = 1.0;
   const double arm = length_ / two_pi;
   weight_.resize(n);
-  for (std::size_t u = 0; u < n; ++u) {
-    const double to_length = after[u] == before[u] ? arm : 1.0;
-    weight_[u] = to_length * to_length / static_cast<double>(n);
-  }
+  for (std::size_t u = 0; u < n; ++u) weight_[u] = (rotation[u] != 0 ? arm * arm : 1.0) / static_cast<double>(n);
 }
 
 double Metric::norm(Span<const double> delta) const noexcept { return std::sqrt(product(delta, delta)); }
@@ -42,13 +38,9 @@ double Metric::product(Span<const double> one, Span<const double> other) const n
   return sum;
 }
 
-double Metric::extent(const Problem& problem, Span<const double> q, int& farthest) const {
-  std::vector<double> value(static_cast<std::size_t>(problem.unknowns()));
-  problem.values(q, value);
-  farthest = -1;
-  if (value.empty()) return 0.0;
-  const auto [low, high] = std::minmax_element(value.begin(), value.end());
-  farthest = static_cast<int>((-*low > *high ? low : high) - value.begin());
+double Metric::extent(Span<const double> q) noexcept {
+  if (q.empty()) return 0.0;
+  const auto [low, high] = std::minmax_element(q.begin(), q.end());
   return *high - *low;
 }
 

@@ -18,8 +18,8 @@ class Metric {
   double norm(Span<const double> delta) const noexcept;
   double product(Span<const double> one, Span<const double> other) const noexcept;
 
-  /// Spread (mm) of the values of the real unknowns at q, and the one whose value is farthest from 0.
-  double extent(const Problem& problem, Span<const double> q, int& farthest) const;
+  /// Spread (mm) of the numbers in q: of positions, next to which those of rotations are small.
+  static double extent(Span<const double> q) noexcept;
 
  private:
   std::vector<double> weight_;
