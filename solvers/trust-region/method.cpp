@@ -28,6 +28,7 @@ constexpr double sign_share = 1e-5;       // of the target: a gradient that is n
 constexpr double alike = 1.0 + 1e-9;      // a row is named where it is worse than those before it
 constexpr int corrections = 2;
 constexpr double longest_correction = 0.5;  // of its step: beyond it another way back is tried
+constexpr int polishing = 2;  // iterations for rows that hold to the tolerance
 constexpr int patience = 10;                // iterations without progress next to the targets
 
 double dot(Span<const double> a, Span<const double> b) {
@@ -125,6 +126,14 @@ void Method::judge() {
     }
   }
   violation_ = largest_violation();
+}
+
+double Method::energy_of_rows() const noexcept {
+  double sum = 0.0;
+  for (std::size_t r = 0; r < multipliers_.size(); ++r) {
+    sum += std::fabs(multipliers_[r] * (point_.rows[r] - problem_.row_lower()[r]));
+  }
+  return sum;
 }
 
 bool Method::errors_within_targets() const noexcept {
@@ -433,7 +442,7 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
   }
   const double smallest = smallest_share * metric_.length();
   double fraction = 0.0, best = std::numeric_limits<double>::infinity();
-  int waited = 0;
+  int waited = 0, polished = 0;
   for (;;) {
     bool usable = false;
     status = normal_.factor(usable);
@@ -448,12 +457,16 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
     if (std::string reason; diverges(reason)) return finish({Claim::diverged, reason});
     status = point_.find_hessian(multipliers_);
     if (!status.ok()) return finish({Claim::failed, status.text});
-    if (errors_within_targets()) {
+    // Rows within the tolerance may still cost an energy that is not: Newton's steps soon mend that.
+    const bool settled = polished >= polishing || energy_of_rows() <= progress_.limits().tolerance;
+    if (errors_within_targets() && !settled) ++polished;
+    if (errors_within_targets() && settled) {
       bool go_on = false;
       const newton::Ending ending = at_stationary_point(go_on);
       if (!go_on) return finish(ending);
-    } else {
+    } else if (!errors_within_targets()) {
       leaving_saddle_ = false;
+      polished = 0;
     }
     if (worst_error() < 1e3 && !leaving_saddle_) {
       waited = worst_error() < 0.5 * best ? 0 : waited + 1;
@@ -481,6 +494,10 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
                                   stationarity_, violation_)});
       }
       verdict = try_step(step);
+    }
+    if (verdict == Verdict::rounding && errors_within_targets() && polished < polishing) {
+      polished = polishing;
+      continue;
     }
     if (verdict == Verdict::rounding) {
       return finish(

@@ -53,6 +53,7 @@ class Method {
   void judge();
   double violation(const std::vector<double>& rows) const noexcept;  // Σ, mm
   double largest_violation() const noexcept;
+  double energy_of_rows() const noexcept;  // Σ|λ c|, N mm
   bool errors_within_targets() const noexcept;
   double worst_error() const noexcept;
 
