@@ -28,7 +28,9 @@ constexpr double sign_share = 1e-5;       // of the target: a gradient that is n
 constexpr double alike = 1.0 + 1e-9;      // a row is named where it is worse than those before it
 constexpr int corrections = 2;
 constexpr double longest_correction = 0.5;  // of its step: beyond it another way back is tried
-constexpr int polishing = 2;  // iterations for rows that hold to the tolerance
+constexpr double noticed = 0.99;            // of a violation: less is progress
+constexpr int restoring_patience = 40;      // iterations without it
+constexpr int polishing = 2;                // iterations for rows that hold to the tolerance
 constexpr int patience = 10;                // iterations without progress next to the targets
 
 double dot(Span<const double> a, Span<const double> b) {
@@ -442,7 +444,8 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
   }
   const double smallest = smallest_share * metric_.length();
   double fraction = 0.0, best = std::numeric_limits<double>::infinity();
-  int waited = 0, polished = 0;
+  double least_violation = std::numeric_limits<double>::infinity();
+  int waited = 0, polished = 0, unrestored = 0;
   for (;;) {
     bool usable = false;
     status = normal_.factor(usable);
@@ -477,10 +480,20 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
       best = std::numeric_limits<double>::infinity();
     }
     normal_.step(normal_delta_);
+    if (violation_ <= progress_.limits().tolerance || violation(point_.rows) < noticed * least_violation) {
+      least_violation = violation(point_.rows);
+      unrestored = 0;
+    } else if (++unrestored >= restoring_patience) {
+      return finish(infeasible("many steps have not brought them closer"));
+    }
     if (violation_ > progress_.limits().tolerance) {
-      const double here = violation(point_.rows);
-      if (!(here - normal_.left(normal_delta_) > hopeless * here)) {
+      const double here = violation(point_.rows), share = (here - normal_.left(normal_delta_)) / here;
+      if (!(share > hopeless)) {
         return finish(infeasible("to first order no step brings them closer, as their Jacobian is singular here"));
+      }
+      // Next to a singular Jacobian factors give the direction, and too short a step.
+      if (share < 0.5) {
+        for (double& number : normal_delta_) number /= share;
       }
     }
     Step step;
@@ -500,9 +513,12 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
       continue;
     }
     if (verdict == Verdict::rounding) {
+      int negative = 0;
+      const bool minimum = subproblem_.positive(static_cast<double>(problem_.unknowns()) * target_, negative);
       return finish(
-          {Claim::stalled, text("rounding hides any further improvement: stationarity %.2e N, rows to %.2e mm",
-                                stationarity_, violation_)});
+          {Claim::stalled,
+           text("rounding hides any further improvement: stationarity %.2e N, rows to %.2e mm; %s", stationarity_,
+                violation_, minimum ? "no curvature is negative" : "there is negative curvature here")});
     }
     fraction = step.fraction;
     status = take();
