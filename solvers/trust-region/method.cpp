@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <limits>
 
+#include "plugins/sdk/guard.hpp"
+
 namespace bowstring::trust_region {
 
 namespace {
@@ -15,6 +17,7 @@ constexpr double first_share = 0.05;      // of the scene's length: the first ra
 constexpr double smallest_share = 1e-13;  // of it: no step is found
 constexpr double normal_share = 0.8;      // of the radius that the normal step may take
 constexpr double boundary = 0.9;          // share of the way to a bound that a step may go
+constexpr double held = 1e-6;             // of a step: it goes nowhere
 constexpr double bound_push = 1e-2;       // of a bound's size: how far inside an unknown starts
 constexpr double least_ratio = 1e-2, poor_ratio = 0.25, good_ratio = 0.75, excellent_ratio = 0.95;
 constexpr double switching = 1e-4;        // N/mm: decrease against violation²
@@ -194,15 +197,17 @@ bool Method::compose(Step& step) {
   return std::isfinite(step.decrease) && std::isfinite(step.norm);
 }
 
-void Method::keep_bounds(Step& step) const {
+void Method::keep_bounds(Step& step) {
   if (bounds_.empty()) return;
-  std::vector<double> value(at(problem_.unknowns()));
+  std::vector<double>& value = unknown_value_;
   problem_.values(point_.q, value);
   double share = 1.0;
   for (const newton::Side& side : bounds_) {
     const double change = side.sign * step.delta[at(side.index)];
     const double slack = -side.violation(value[at(side.index)]);
-    if (change > boundary * slack) share = std::min(share, boundary * std::max(0.0, slack) / change);
+    if (!(share * change > boundary * slack)) continue;
+    share = boundary * std::max(0.0, slack) / change;
+    holding_unknown_ = side.index;
   }
   if (share == 1.0) return;
   for (double& number : step.delta) number *= share;
@@ -311,11 +316,17 @@ bool Method::improves_errors() {
 Method::Verdict Method::try_step(Step& step) {
   problem_.retract(point_.q, step.delta, trial_.q);
   const Status status = point_.try_out(trial_.q, trial_.energy, trial_.rows);
+  if (status.code == Code::interrupted || status.code == Code::unsupported || status.code == Code::invalid_input) {
+    throw StatusError(status);
+  }
   if (!status.ok() || !std::isfinite(trial_.energy)) {
+    trial_failure_ = status.code == Code::failed ? status.text : "";
     const double travelled = status.code == Code::refused ? problem_.travelled() : 0.0;
     radius_ = std::min(radius_, step.norm) * (travelled > 0.0 ? std::clamp(0.45 / travelled, 0.1, 0.7) : 0.5);
     return Verdict::shorten;
   }
+  trials_refused_ = false;
+  trial_failure_.clear();
   trial_.violation = violation(trial_.rows);
   correct(step);
   if (acceptable(step)) return Verdict::accepted;
@@ -417,6 +428,14 @@ newton::Ending Method::infeasible(const char* why) const {
 }
 
 newton::Ending Method::without_step() const {
+  if (held_by_bound_ < held) {
+    return {Claim::stalled,
+            text("a bound on an unknown, an edge's or a wire's length, holds every step back: unknown %d is "
+                 "%.6g; stationarity %.2e N, rows to %.2e mm",
+                 holding_unknown_, unknown_value_[at(holding_unknown_)], stationarity_, violation_)};
+  }
+  if (!trial_failure_.empty()) return {Claim::failed, trial_failure_};
+  if (trials_refused_) return {Claim::stalled, "every trial step was refused, however short"};
   std::string reason =
       text("no step improves the point: stationarity %.2e N, rows to %.2e mm", stationarity_, violation_);
   if (violation_ > progress_.limits().tolerance) {
@@ -426,7 +445,6 @@ newton::Ending Method::without_step() const {
     }
     reason += "; " + failing_rows();
   }
-  if (held_by_bound_ < 0.1) reason += "; a bound on an unknown, an edge's or a wire's length, holds the steps back";
   if (leaving_saddle_) reason += "; it is a saddle";
   return {Claim::stalled, reason};
 }
@@ -496,6 +514,8 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
         for (double& number : normal_delta_) number /= share;
       }
     }
+    trials_refused_ = true;
+    trial_failure_.clear();
     Step step;
     Verdict verdict = Verdict::shorten;
     while (verdict == Verdict::shorten) {
@@ -506,6 +526,7 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
                                   "%.2e mm",
                                   stationarity_, violation_)});
       }
+      if (step.bound_share < held) return finish(without_step());
       verdict = try_step(step);
     }
     if (verdict == Verdict::rounding && errors_within_targets() && polished < polishing) {

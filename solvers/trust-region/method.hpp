@@ -58,7 +58,7 @@ class Method {
   double worst_error() const noexcept;
 
   bool compose(Step& step);
-  void keep_bounds(Step& step) const;
+  void keep_bounds(Step& step);
   Verdict try_step(Step& step);
   /// A second-order correction: back to the rows that the step was to reach, with the step's own factors.
   void correct(const Step& step);
@@ -87,6 +87,9 @@ class Method {
   double target_ = 0.0;  // N
   double stationarity_ = 0.0, violation_ = 0.0;
   bool leaving_saddle_ = false;
+  bool trials_refused_ = false;  // every one since the last step
+  std::string trial_failure_;    // of the last one
+  int holding_unknown_ = 0;
   double held_by_bound_ = 1.0;  // the last step's share
   std::vector<double> multipliers_, newton_multipliers_, residual_, normal_delta_, tangential_, right_, unknown_value_;
   std::vector<double> wanted_rows_, back_, back_multipliers_;

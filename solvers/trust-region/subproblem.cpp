@@ -16,6 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int refinements = 3;
 constexpr int most_factors = 25;         // of one subproblem
 constexpr double boundary_width = 0.15;  // of Δ
+constexpr double narrowest = 1e-10;      // bracket of σ, relative
 constexpr double hard_share = 0.1;       // what a step in the hard case may lose of the model's decrease
 constexpr double first_growth = 4.0;     // of a shift that was too small; squared each time, as nothing is known
 constexpr double smallest_shift = 1e-14, largest_shift = 1e15;  // N/mm
@@ -117,7 +118,7 @@ double Subproblem::inverse_iteration(int steps) {
     for (std::size_t u = 0; u < direction_.size(); ++u) right_[u] = metric_.weight()[u] * direction_[u];
     solve(right_, zero_rows_, work_, multipliers_);
     const double norm = metric_.norm(work_);
-    if (!(norm > 0.0) || !std::isfinite(norm)) return 0.0;
+    if (!(norm > 0.0) || !std::isfinite(norm)) return std::numeric_limits<double>::quiet_NaN();
     for (std::size_t u = 0; u < direction_.size(); ++u) direction_[u] = work_[u] / norm;
   }
   return curvature(direction_);
@@ -136,87 +137,100 @@ void Subproblem::point_forward() {
   }
 }
 
+/// Adds a direction of negative curvature to a step that ends inside the region, up to its boundary. False: there is
+/// none, or the model would lose more than `share` of its decrease by it.
+bool Subproblem::extend(Span<const double> right, double radius, double least_gradient, double shift, double share,
+                        double leftmost, std::vector<double>& step) {
+  if (!(leftmost < 0.0)) return false;
+  const double slope = dot(right, direction_);
+  if (std::fabs(slope) < least_gradient) {
+    point_forward();
+  } else if (slope < 0.0) {
+    for (double& number : direction_) number = -number;
+  }
+  const double along = metric_.product(step, direction_);
+  const double length =
+      -along + std::sqrt(std::max(0.0, radius * radius - metric_.product(step, step) + along * along));
+  const double decrease = dot(right, step) + shift * radius * radius;
+  if (length * length * (leftmost + shift) > share * decrease) return false;
+  for (std::size_t u = 0; u < step.size(); ++u) step[u] += length * direction_[u];
+  return true;
+}
+
 Subproblem::Answer Subproblem::minimise(Span<const double> right, double radius, double least_gradient,
                                         std::vector<double>& step, std::vector<double>& multipliers) {
   Answer out;
-  double lower = 0.0, upper = infinity, shift = 0.0;
+  double lower = 0.0, upper = infinity, shift = 0.0, growth = first_growth;
   bool usable = factor(shift, &out.negative);
   out.full_norm = infinity;
-  double next_up = last_shift_;
+  double next_up = std::max(last_shift_, smallest_shift);
   if (!usable && out.negative > 0) {
     // The curvature nearest to 0 is a measure of the leftmost one.
-    const double nearest = inverse_iteration(3);
-    next_up = std::max(next_up, 1.5 * std::fabs(nearest));
-    lower = std::max(lower, -nearest);
+    if (const double nearest = inverse_iteration(3); std::isfinite(nearest)) {
+      next_up = std::max(next_up, 1.5 * std::fabs(nearest));
+      lower = std::max(lower, -nearest);
+    }
   }
-  next_up = std::max(next_up, smallest_shift);
-  double growth = first_growth;
-  for (int count = 0;; ++count) {
-    double next = 0.0;
-    if (!usable) {
-      lower = std::max(lower, shift);
-      next = between(lower, upper);
-      if (!std::isfinite(upper)) {
-        next = std::max(next_up, growth * shift);
-        growth = std::min(growth * growth, 1e4);
-      }
-      if (shift > largest_shift || (count >= most_factors && !std::isfinite(upper))) return out;
-      // No more tries: the last usable shift has to do.
-      if (count >= most_factors) next = upper;
-    } else {
+  for (int count = 0; count < most_factors; ++count) {
+    double next = shift;
+    if (usable) {
       solve(right, zero_rows_, step, multipliers);
       const double norm = metric_.norm(step);
       if (shift == 0.0) out.full_norm = norm;
-      out.found = true;
-      out.shift = shift;
-      if (shift == 0.0 && norm <= (1.0 + boundary_width) * radius) {
-        out.interior = true;
-        break;
+      if ((shift == 0.0 && norm <= radius) || std::fabs(norm - radius) <= boundary_width * radius) {
+        out.found = true;
+        out.shift = shift;
+        out.interior = shift == 0.0;
+        if (shift > 0.0) last_shift_ = shift;
+        return out;
       }
-      if (std::fabs(norm - radius) <= boundary_width * radius) break;
       if (norm > radius) {
         lower = std::max(lower, shift);
-      } else {
-        upper = std::min(upper, shift);
-        // On the way to the hard case: a direction that leads to the boundary from here.
+      } else if (norm < radius) {
         const double leftmost = inverse_iteration(2);
-        lower = std::max(lower, -leftmost);
-        const double along = metric_.product(step, direction_);
-        const double away = std::sqrt(std::max(0.0, radius * radius - norm * norm + along * along));
-        const double slope = dot(right, direction_);
-        if (std::fabs(slope) < least_gradient) {
-          point_forward();
-        } else if (slope < 0.0) {
-          for (double& number : direction_) number = -number;
+        if (extend(right, radius, least_gradient, shift, hard_share, leftmost, step)) {
+          out.found = out.hard = true;
+          out.shift = last_shift_ = shift;
+          return out;
         }
-        const double along_now = metric_.product(step, direction_);
-        const double length = -along_now + away;
-        const double shifted_curvature = leftmost + shift;
-        const double decrease = dot(right, step) + shift * radius * radius;
-        if (leftmost < 0.0 && (length * length * shifted_curvature <= hard_share * decrease || count >= most_factors)) {
-          for (std::size_t u = 0; u < step.size(); ++u) step[u] += length * direction_[u];
-          out.hard = true;
-          break;
+        // Factors that are all but singular have no direction to tell: this is where the leftmost curvature is.
+        usable = std::isfinite(leftmost);
+        if (usable) {
+          upper = std::min(upper, shift);
+          lower = std::max(lower, -leftmost);
         }
+      } else {
+        usable = false;
       }
-      if (count >= most_factors) {
-        if (norm > radius) {
-          for (double& number : step) number *= radius / norm;
-        }
-        break;
-      }
+    }
+    if (usable) {
       for (std::size_t u = 0; u < step.size(); ++u) right_[u] = metric_.weight()[u] * step[u];
       solve(right_, zero_rows_, derivative_, multipliers_);
-      const double rate = metric_.product(step, derivative_);
-      next = rate > 0.0 ? shift + norm * norm / rate * (norm - radius) / radius : first_growth * shift;
+      const double norm = metric_.norm(step), rate = metric_.product(step, derivative_);
+      if (rate > 0.0) next = shift + norm * norm / rate * (norm - radius) / radius;
+    } else {
+      lower = std::max(lower, shift);
     }
-    if (!(next > lower) || next >= upper) {
-      next = std::isfinite(upper) ? between(lower, upper) : std::max(first_growth * lower, next_up);
+    if (!(next > lower) || !(next < upper)) {
+      if (std::isfinite(upper)) {
+        if (upper - lower <= narrowest * upper) break;
+        next = between(lower, upper);
+      } else {
+        next = std::max(next_up, growth * lower);
+        growth = std::min(growth * growth, 1e4);
+        if (next > largest_shift) return out;
+      }
     }
     shift = next;
     usable = factor(shift);
   }
-  if (out.shift > 0.0) last_shift_ = out.shift;
+  // No boundary within the tries: the shortest usable step, and what negative curvature there is.
+  if (!std::isfinite(upper)) return out;
+  factor(upper);
+  solve(right, zero_rows_, step, multipliers);
+  out.shift = last_shift_ = upper;
+  out.found = std::isfinite(metric_.norm(step));
+  out.hard = out.found && extend(right, radius, least_gradient, upper, infinity, inverse_iteration(2), step);
   return out;
 }
 
@@ -230,14 +244,19 @@ Leftmost Subproblem::leftmost(double accuracy) {
   double start = smallest_shift, growth = first_growth;
   if (negative >= 0) {
     const double nearest = inverse_iteration(4);
-    start = std::max(start, 1.5 * std::fabs(nearest));
-    if (!usable) lower = std::max(0.0, -nearest);
+    if (std::isfinite(nearest)) start = std::max(start, 1.5 * std::fabs(nearest));
+    if (!usable && nearest < 0.0) lower = -nearest;
   }
   for (int count = 0; count < most_factors; ++count) {
     if (usable) {
-      upper = shift;
       // Inverse iteration from beyond the leftmost curvature converges to it, and bounds it from the other side.
       double before = infinity, now = inverse_iteration(3);
+      if (!std::isfinite(now)) {
+        shift *= 1.0 + 1e-3;
+        usable = factor(shift);
+        continue;
+      }
+      upper = shift;
       for (int k = 0; k < 10 && std::fabs(now - before) > 0.1 * accuracy * std::fabs(now); ++k) {
         before = now;
         now = inverse_iteration(2);

@@ -49,8 +49,10 @@ class Subproblem {
   Leftmost leftmost(double accuracy = 1e-3);
 
  private:
+  bool extend(Span<const double> right, double radius, double least_gradient, double shift, double share,
+              double leftmost, std::vector<double>& step);
   bool factor(double shift, int* negative = nullptr);
-  /// A few inverse iterations from the last direction; its Rayleigh quotient of W.
+  /// A few inverse iterations from the last direction; its Rayleigh quotient of W, NaN where the factors fail.
   double inverse_iteration(int steps);
   double curvature(Span<const double> direction) const;
   void multiply(Span<const double> direction, std::vector<double>& out) const;  // W direction
