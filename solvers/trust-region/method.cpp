@@ -20,15 +20,16 @@ constexpr double boundary = 0.9;          // share of the way to a bound that a 
 constexpr double held = 1e-6;             // of a step: it goes nowhere
 constexpr double bound_push = 1e-2;       // of a bound's size: how far inside an unknown starts
 constexpr double least_ratio = 1e-2, poor_ratio = 0.25, good_ratio = 0.75, excellent_ratio = 0.95;
-constexpr double switching = 1e-4;        // N/mm: decrease against violation²
-constexpr double rounding_steps = 100.0;  // what sums leave of an energy, in units of its last place
-constexpr double newton_share = 1e-6;     // of the energy: a decrease so small may be lost in it
-constexpr double hopeless = 1e-10;        // of the violation: what is no decrease of it
-constexpr double little = 1e-3;           // the same, where no step was found either
-constexpr double far = 100.0;             // lengths of the scene, to where rows are linearly satisfied
-constexpr double unbounded = 1e3;         // sizes of the scene at the start
-constexpr double sign_share = 1e-5;       // of the target: a gradient that is none
-constexpr double alike = 1.0 + 1e-9;      // a row is named where it is worse than those before it
+constexpr double largest_violation_share = 0.05;  // of the scene's length, summed over rows
+constexpr double switching = 1e-4;                // N/mm: decrease against violation²
+constexpr double rounding_steps = 100.0;          // what sums leave of an energy, in units of its last place
+constexpr double newton_share = 1e-6;             // of the energy: a decrease so small may be lost in it
+constexpr double hopeless = 1e-10;                // of the violation: what is no decrease of it
+constexpr double little = 1e-3;                   // the same, where no step was found either
+constexpr double far = 100.0;                     // lengths of the scene, to where rows are linearly satisfied
+constexpr double unbounded = 1e3;                 // sizes of the scene at the start
+constexpr double sign_share = 1e-5;               // of the target: a gradient that is none
+constexpr double alike = 1.0 + 1e-9;              // a row is named where it is worse than those before it
 constexpr int corrections = 2;
 constexpr double longest_correction = 0.5;  // of its step: beyond it another way back is tried
 constexpr double noticed = 0.99;            // of a violation: less is progress
@@ -93,7 +94,7 @@ Status Method::begin(std::vector<double>& multipliers) {
   start_energy_ = point_.energy;
   start_extent_ = metric_.length();
   target_ = std::max(progress_.limits().tolerance, problem_.rounding_floor());
-  filter_.reset(1e4 * std::max(1.0, violation(point_.rows)));
+  filter_.reset(std::max(largest_violation_share * metric_.length(), 1.1 * violation(point_.rows)));
   newton_multipliers_ = multipliers.size() == m ? multipliers : std::vector<double>();
   multipliers_.assign(m, 0.0);
   right_.resize(n);
@@ -348,7 +349,7 @@ Status Method::take() {
   if (!status.ok() || !new_epoch) return status;
   normal_.analyse();
   subproblem_.analyse();
-  filter_.reset(1e4 * std::max(1.0, violation(point_.rows)));
+  filter_.reset(std::max(largest_violation_share * metric_.length(), 1.1 * violation(point_.rows)));
   return status;
 }
 
@@ -542,6 +543,7 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
                 violation_, minimum ? "no curvature is negative" : "there is negative curvature here")});
     }
     fraction = step.fraction;
+    if (!step.restoring) least_violation = std::numeric_limits<double>::infinity();
     status = take();
     if (!status.ok()) {
       return finish({Claim::failed, status.text.empty() ? "an accepted point could not be evaluated" : status.text});
