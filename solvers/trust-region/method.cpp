@@ -20,7 +20,7 @@ constexpr double boundary = 0.9;          // share of the way to a bound that a 
 constexpr double held = 1e-6;             // of a step: it goes nowhere
 constexpr double bound_push = 1e-2;       // of a bound's size: how far inside an unknown starts
 constexpr double least_ratio = 1e-2, poor_ratio = 0.25, good_ratio = 0.75, excellent_ratio = 0.95;
-constexpr double largest_violation_share = 0.05;  // of the scene's length, summed over rows
+constexpr double largest_violation_share = 0.2;  // of the scene's length, summed over rows
 constexpr double switching = 1e-4;                // N/mm: decrease against violation²
 constexpr double rounding_steps = 100.0;          // what sums leave of an energy, in units of its last place
 constexpr double newton_share = 1e-6;             // of the energy: a decrease so small may be lost in it
