@@ -21,15 +21,15 @@ constexpr double held = 1e-6;             // of a step: it goes nowhere
 constexpr double bound_push = 1e-2;       // of a bound's size: how far inside an unknown starts
 constexpr double least_ratio = 1e-2, poor_ratio = 0.25, good_ratio = 0.75, excellent_ratio = 0.95;
 constexpr double largest_violation_share = 0.2;  // of the scene's length, summed over rows
-constexpr double switching = 1e-4;                // N/mm: decrease against violation²
-constexpr double rounding_steps = 100.0;          // what sums leave of an energy, in units of its last place
-constexpr double newton_share = 1e-6;             // of the energy: a decrease so small may be lost in it
-constexpr double hopeless = 1e-10;                // of the violation: what is no decrease of it
-constexpr double little = 1e-3;                   // the same, where no step was found either
-constexpr double far = 100.0;                     // lengths of the scene, to where rows are linearly satisfied
-constexpr double unbounded = 1e3;                 // sizes of the scene at the start
-constexpr double sign_share = 1e-5;               // of the target: a gradient that is none
-constexpr double alike = 1.0 + 1e-9;              // a row is named where it is worse than those before it
+constexpr double switching = 1e-4;               // N/mm: decrease against violation²
+constexpr double rounding_steps = 100.0;         // what sums leave of an energy, in units of its last place
+constexpr double newton_share = 1e-6;            // of the energy: a decrease so small may be lost in it
+constexpr double hopeless = 1e-10;               // of the violation: what is no decrease of it
+constexpr double little = 1e-3;                  // the same, where no step was found either
+constexpr double far = 100.0;                    // lengths of the scene, to where rows are linearly satisfied
+constexpr double unbounded = 1e3;                // sizes of the scene at the start
+constexpr double sign_share = 1e-5;              // of the target: a gradient that is none
+constexpr double alike = 1.0 + 1e-9;             // a row is named where it is worse than those before it
 constexpr int corrections = 2;
 constexpr double longest_correction = 0.5;  // of its step: beyond it another way back is tried
 constexpr double noticed = 0.99;            // of a violation: less is progress
@@ -372,6 +372,11 @@ bool Method::diverges(std::string& reason) const {
   return true;
 }
 
+/// N/mm: a curvature so small changes no force by more than the tolerance over 1 mm, and counts as none.
+double Method::least_curvature() const noexcept {
+  return static_cast<double>(problem_.unknowns()) * progress_.limits().tolerance;
+}
+
 newton::Ending Method::at_stationary_point(bool& go_on) {
   go_on = false;
   int negative = 0;
@@ -380,8 +385,7 @@ newton::Ending Method::at_stationary_point(bool& go_on) {
             "the first-order conditions hold to the tolerance, and the curvature is positive in every "
             "direction that the rows leave"};
   }
-  // A curvature that changes no force by more than the target over 1 mm.
-  const double least = static_cast<double>(problem_.unknowns()) * target_;
+  const double least = least_curvature();
   int below = 0;
   if (subproblem_.positive(least, below)) {
     return {Claim::optimal,
@@ -536,7 +540,7 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
     }
     if (verdict == Verdict::rounding) {
       int negative = 0;
-      const bool minimum = subproblem_.positive(static_cast<double>(problem_.unknowns()) * target_, negative);
+      const bool minimum = subproblem_.positive(least_curvature(), negative);
       return finish(
           {Claim::stalled,
            text("rounding hides any further improvement: stationarity %.2e N, rows to %.2e mm; %s", stationarity_,

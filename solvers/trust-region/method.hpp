@@ -69,6 +69,7 @@ class Method {
   Status take();
 
   bool diverges(std::string& reason) const;
+  double least_curvature() const noexcept;
   newton::Ending at_stationary_point(bool& go_on);
   newton::Ending without_step() const;
   std::string failing_rows() const;
