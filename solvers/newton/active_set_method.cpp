@@ -31,8 +31,8 @@ constexpr double pull = 1e-12;  // N: a predicted force so small may stay
 
 }  // namespace
 
-ActiveSetMethod::ActiveSetMethod(Point& point, Progress& progress)
-    : point_(point), progress_(progress), problem_(point.problem()) {
+ActiveSetMethod::ActiveSetMethod(Point& point, Progress& progress, bool hasty)
+    : point_(point), progress_(progress), problem_(point.problem()), hasty_(hasty) {
   sides_ = sides_of_rows(problem_);
   bounds_ = sides_of_unknowns(problem_);
   equalities_ = equality_rows(problem_);
@@ -136,8 +136,8 @@ int ActiveSetMethod::update_active(const std::vector<double>& multipliers) {
 }
 
 bool ActiveSetMethod::direction(std::vector<double>& multipliers) {
-  // The last few rows change along with the next step.
-  const int few = std::max(few_changes, static_cast<int>(few_of_rows * static_cast<double>(sides_.size())));
+  const int share = static_cast<int>(few_of_rows * static_cast<double>(sides_.size()));
+  const int few = hasty_ ? std::max(few_changes, share) : 0;
   for (int k = 0; k <= most_changes_of_set; ++k) {
     keep_active_forces(multipliers);
     if (!solve(multipliers)) return false;

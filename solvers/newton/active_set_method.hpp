@@ -18,7 +18,9 @@ namespace bowstring::newton {
 /// nowhere else: it gives up, and leaves the point where it began, when errors do not fall.
 class ActiveSetMethod {
  public:
-  ActiveSetMethod(Point& point, Progress& progress);
+  /// `hasty`: a few rows of a set that has not settled may change along with the next step, which saves factorizations
+  /// after a change of a load, and goes astray more often after a barrier method.
+  ActiveSetMethod(Point& point, Progress& progress, bool hasty);
 
   /// From point.q, which is accepted and expanded, and multipliers near a solution's. A claim other than `optimal`
   /// leaves both as they were, unless a limit was reached or the user stopped (`interrupted`).
@@ -53,6 +55,7 @@ class ActiveSetMethod {
   std::vector<int> equalities_;
   std::vector<char> active_;  // per side
   std::vector<double> softness_, right_a_, right_b_, delta_, change_, stationarity_, trial_q_, trial_rows_;
+  bool hasty_;
   int steps_ = 0, changes_ = 0;
   bool interrupted_ = false;
 };
