@@ -91,7 +91,7 @@ ComponentChoice read_enforcement(const Node& root, Reading& reading) {
 }
 
 ComponentChoice read_solver(const Node& root, Reading& reading) {
-  return read_setting(root, Kind::solver, "ipopt", reading);
+  return read_setting(root, Kind::solver, "interior-point", reading);
 }
 
 CertificateTable read_certificate(const Node& root, Report& report) {

@@ -15,12 +15,11 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int no_slot = std::numeric_limits<int>::min();
-constexpr int most_in_row = 64;          // retained unknowns of one row
+constexpr int most_in_row = 64;  // retained unknowns of one row
 // ρ, of the mean diagonal entry that the rows meet; 1 would cancel a negative one that a row reads alone.
 constexpr double row_weight = 2.0;
 constexpr double dual_slack = 1e-10;     // of 1/ρ
 constexpr double largest_growth = 1e12;  // beyond it the factor says nothing
-constexpr double refined = 1e-9;         // relative residual that needs no further refinement
 
 }  // namespace
 
@@ -661,11 +660,11 @@ double KktSystem::residual(Span<const double> a, Span<const double> b, Span<cons
 }
 
 double KktSystem::solve(Span<const double> a, Span<const double> b, Span<const double> exactness, int refinements,
-                        Span<double> delta, Span<double> lambda) {
+                        Span<double> delta, Span<double> lambda, double enough) {
   solve_once(a.data(), b.data(), delta.data(), lambda.data());
   double before = residual(a, b, exactness, delta, lambda);
   std::vector<double> ra(at(n_)), rb(at(m_));
-  for (int k = 0; k < refinements && before > refined; ++k) {
+  for (int k = 0; k < refinements && before > enough; ++k) {
     std::copy(work_a_.begin(), work_a_.end(), ra.begin());
     std::copy(work_b_.begin(), work_b_.end(), rb.begin());
     solve_once(ra.data(), rb.data(), delta_.data(), lambda_.data());

@@ -52,9 +52,10 @@ class KktSystem {
   std::size_t stored() const noexcept { return matrix_.stored(); }
 
   /// (a, b) → (δ, λ). `exactness`: m, the e that the answer has for soft rows, or empty: as factorised. λ of a row that
-  /// is off is 0. Returns the residual's largest entry relative to the right side's after at most `refinements` steps.
+  /// is off is 0. Returns the residual's largest entry relative to the right side's, after refinements until it is no
+  /// more than `enough`, but at most `refinements`.
   double solve(Span<const double> a, Span<const double> b, Span<const double> exactness, int refinements,
-               Span<double> delta, Span<double> lambda);
+               Span<double> delta, Span<double> lambda, double enough = 1e-13);
 
  private:
   struct Pair {  // two places that the Hessian couples: Aᵀ W A goes to all their retained unknowns

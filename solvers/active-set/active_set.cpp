@@ -48,8 +48,8 @@ class ActiveSet final : public Solver {
       point.q.assign(start.begin(), start.end());
       newton::Progress progress(limits_, context, out);
       std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
-      const newton::Ending ending = newton::solve_by_hand_over(
-          point, progress, {{std::begin(hand_overs), std::end(hand_overs)}, true}, multipliers);
+      const newton::Ending ending =
+          newton::solve_by_hand_over(point, progress, {hand_overs, std::size(hand_overs)}, multipliers);
       out.q = point.q;
       out.multipliers = multipliers;
       out.claim = ending.claim;

@@ -22,6 +22,7 @@ constexpr int few_changes = 2;
 constexpr double few_of_rows = 0.005;
 constexpr int most_changes_of_set = 6;  // at one point
 constexpr int refinements = 6;
+constexpr double refined = 1e-9;  // relative residual that no further refinement is spent on
 // Times the tolerance, and times the error before: then the last factors serve for one more step.
 constexpr double near_enough = 30.0, fast_enough = 1e-2;
 constexpr int patience = 7;          // steps that may pass without smaller errors
@@ -111,7 +112,7 @@ void ActiveSetMethod::solve_again(const std::vector<double>& multipliers, int mo
   }
   point_.lagrangian_gradient(multipliers, stationarity_);
   for (std::size_t u = 0; u < right_a_.size(); ++u) right_a_[u] = -stationarity_[u];
-  system_.solve(right_a_, right_b_, {}, most_refinements, delta_, change_);
+  system_.solve(right_a_, right_b_, {}, most_refinements, delta_, change_, refined);
   progress_.result().factorization_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

@@ -14,13 +14,14 @@ constexpr double warm_barrier = 1e-4;  // N mm: a smaller one traps a warm start
 
 }  // namespace
 
-Ending solve_by_hand_over(Point& point, Progress& progress, const HandOver& how, std::vector<double>& multipliers) {
+Ending solve_by_hand_over(Point& point, Progress& progress, Span<const double> barriers,
+                          std::vector<double>& multipliers) {
   BarrierSettings settings;
   if (!multipliers.empty()) {
     settings.warm = true;
     settings.first_barrier = warm_barrier;
   }
-  if (settings.warm && how.active_set_first) {
+  if (settings.warm) {
     bool new_epoch = false;
     Status status = point.accept(new_epoch);
     if (status.ok()) status = point.expand();
@@ -29,7 +30,7 @@ Ending solve_by_hand_over(Point& point, Progress& progress, const HandOver& how,
     const Ending ending = method.run(multipliers);
     if (ending.claim != Claim::stalled || method.interrupted()) return ending;
   }
-  for (const double barrier : how.barriers) {
+  for (const double barrier : barriers) {
     settings.hand_over_barrier = barrier;
     settings.first_barrier = std::max(settings.first_barrier, barrier);
     BarrierMethod first(point, progress, settings);

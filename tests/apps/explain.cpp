@@ -59,12 +59,12 @@ TEST_CASE("explain names curves, fields with their reasons, rows, and the plugin
           "edge closure of 'iliac' (177)\n",
           "constraint 'lumen' (58)\n",
           "unknowns: 703, eliminated because they are held: 14\n",
-          "solved by ipopt with rows by kkt\n",
+          "solved by interior-point with rows by kkt\n",
           "plugins opened, and no others\n",
       });
-  for (const char* plugin :
-       {"constraint/node-wise-contact", "energy/anchoring", "energy/axial-tension", "energy/vessel-strain",
-        "energy/wire-bending", "enforcement/kkt", "geometry/helix", "kinematics/edge-frames", "solver/ipopt"}) {
+  for (const char* plugin : {"constraint/node-wise-contact", "energy/anchoring", "energy/axial-tension",
+                             "energy/vessel-strain", "energy/wire-bending", "enforcement/kkt", "geometry/helix",
+                             "kinematics/edge-frames", "solver/interior-point"}) {
     CHECK_MESSAGE(contains(text, std::string("  ") + plugin + "  /"), plugin);
   }
   CHECK_FALSE(contains(text, "kinematics/nodes"));

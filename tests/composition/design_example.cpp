@@ -69,7 +69,7 @@ TEST_CASE("only the plugins that a composition names are asked for") {
 TEST_CASE("defaults stand where the file says nothing") {
   Workbench bench;
   const Composition scene = bench.loaded(test::small_scene);
-  CHECK(scene.solver.name == "ipopt");
+  CHECK(scene.solver.name == "interior-point");
   CHECK(scene.solver.parameters.scalar("tolerance") == 1e-8);
   CHECK_FALSE(scene.solver.parameters.at("tolerance").given);
   CHECK(scene.solver.parameters.at("tolerance").position == "");

@@ -61,7 +61,8 @@ max-iterations = 2.5
            "quantity in N/mm^2 or N/mm; write \"0.03 N/mm^2\" or \"0.03 N/mm\", which mean different things",
            "scene.toml:19:1: unknown key 'stifness' in energy 'anchoring'; expected one of: type, name, on, "
            "stiffness; did you mean 'stiffness'?",
-           "scene.toml:21:18: 'max-iterations' of solver 'ipopt' is number 2.5; expected a whole number, at least 1; "
+           "scene.toml:21:18: 'max-iterations' of solver 'interior-point' is number 2.5; expected a whole number, at "
+           "least 1; "
            "write max-iterations = <whole number>",
        });
 }
@@ -234,7 +235,7 @@ TEST_CASE("tables and lists of tables in each other's place") {
   Workbench bench;
   CHECK(bench.errors("schema = 1\n[scene]\ndimension = 3\n[vessel]\nname = \"v\"\n[[solver]]\n") ==
         Texts{"scene.toml:4:1: 'vessel' is a table; expected a list of tables; write [[vessel]]",
-              "scene.toml:6:1: 'solver' is a list; expected a table; write [solver] with type = \"ipopt\""});
+              "scene.toml:6:1: 'solver' is a list; expected a table; write [solver] with type = \"interior-point\""});
   CHECK(bench.errors("schema = 2\ntitle = 1\nscene = { dimension = 4, dimensions = 2 }\nvessel = [1]\n") ==
         Texts{"scene.toml:1:10: 'schema' is whole number 2; expected 1; write schema = 1; this version reads no other",
               "scene.toml:2:9: 'title' is whole number 1; expected text; write it in quotes",
@@ -309,9 +310,10 @@ TEST_CASE("kinds of values") {
         "'rigid' of vessel 'v' is text \"yes\"; expected true or false; write rigid "
         "= true");
   CHECK(error("solver.tolerance", "1e-8 N") ==
-        "wrong unit: 'tolerance' of solver 'ipopt' is text \"1e-8 N\"; expected a number, more than 0; write 1e-08");
+        "wrong unit: 'tolerance' of solver 'interior-point' is text \"1e-8 N\"; expected a number, more than 0; write "
+        "1e-08");
   CHECK(error("solver.tolerance", "\"1e-8\"") ==
-        "'tolerance' of solver 'ipopt' is text \"1e-8\"; expected a number, more than 0; write 1e-08");
+        "'tolerance' of solver 'interior-point' is text \"1e-8\"; expected a number, more than 0; write 1e-08");
   CHECK(error("vessel.v.geometry.periods", "90 deg") ==
         "wrong unit: 'periods' of geometry 'sinusoid' of vessel 'v' is text \"90 deg\"; expected a number; write 90");
   CHECK(error("vessel.v.geometry.origin", "1") ==

@@ -60,6 +60,7 @@ TEST_CASE("a default that nobody offers is named as one") {
   WithoutSolvers registry;
   bench.write("scene.toml", test::small_scene);
   CHECK(texts(load_composition({"scene.toml", {}}, registry).errors) ==
-        Texts{"scene.toml:1:1: unknown solver 'ipopt', the default of [solver]; expected an installed solver, but none "
+        Texts{"scene.toml:1:1: unknown solver 'interior-point', the default of [solver]; expected an installed solver, "
+              "but none "
               "is; `bowstring plugins solver` says what is installed"});
 }

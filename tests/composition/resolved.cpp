@@ -48,7 +48,7 @@ TEST_CASE("the resolved composition has every default, in a fixed order") {
         R"({"name":"axial-tension","on":"w","type":"axial-tension","tension":10.0},)"
         R"({"name":"anchoring","on":"v","type":"anchoring","stiffness":"0.01 N/mm^2"}],)"
         R"("constraint":[{"name":"lumen","on":["w","v"],"type":"node-wise-contact","centerline":"spline"}],)"
-        R"("enforcement":{"type":"kkt"},"solver":{"type":"ipopt","tolerance":1e-08,"max-iterations":500},)"
+        R"("enforcement":{"type":"kkt"},"solver":{"type":"interior-point","tolerance":1e-08,"max-iterations":500},)"
         R"("certificate":{"stationarity":1e-06,"penetration":1e-08,"complementarity":1e-08,"multiplier":-1e-08,)"
         R"("minimum-stretch":0.2,"require":"none"}})");
 }

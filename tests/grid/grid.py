@@ -20,7 +20,7 @@ import results
 import scenes
 import summary
 
-NATIVE_SOLVERS = ("interior-point", "active-set", "trust-region")
+NATIVE_SOLVERS = ("interior-point", "active-set")
 REFERENCE_SOLVER = "ipopt"
 
 DEFAULT_EVERY = {"A": 10}

@@ -85,7 +85,7 @@ TEST_CASE("a plugin that nobody offers, and one that is not there to be opened")
   PluginHost none(nowhere);
   const Refusal empty = small_planar().check(none);
   CHECK(empty.kind() == RefusalKind::wrong_input);
-  CHECK(contains(empty.text(), "unknown solver 'ipopt'; expected an installed solver, but none is; "));
+  CHECK(contains(empty.text(), "unknown solver 'interior-point'; expected an installed solver, but none is; "));
 }
 
 }  // namespace bowstring

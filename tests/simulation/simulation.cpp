@@ -119,9 +119,11 @@ TEST_CASE("an exception of the progress function ends the solve, and nothing els
 }
 
 TEST_CASE("a solve by Ipopt from within Ipopt's progress is refused, and does not wait for itself") {
-  const SimulationResult outer = small_planar().solve(plugins(), [&](const IterationRecord& record) {
+  Simulation simulation = small_planar();
+  simulation.set("solver.type", "ipopt");
+  const SimulationResult outer = simulation.solve(plugins(), [&](const IterationRecord& record) {
     if (record.iteration != 2) return true;
-    const SimulationResult nested = small_planar().solve(plugins());
+    const SimulationResult nested = simulation.solve(plugins());
     CHECK(nested.ok());
     CHECK(nested.status() == Verdict::failed);
     CHECK(contains(nested.reason(),
