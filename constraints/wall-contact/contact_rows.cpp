@@ -76,8 +76,7 @@ void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion
   }
 }
 
-void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept {
-  const RowPoint point = locate(row, wall, wire, window);
+void refer_to(Row& row, const Wall& wall, const RowPoint& point) noexcept {
   const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
   const int dimension = wall.centerline.dimension;
   double x[3] = {};

@@ -67,8 +67,8 @@ void write_gradient(const Row& row, const Wall& wall, const contact::GapExpansio
 void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, double weight,
                    bool all_places, double* out) noexcept;
 
-/// Makes the state the row's accepted one.
-void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept;
+/// Makes the state at which the row is at `point` its accepted one.
+void refer_to(Row& row, const Wall& wall, const RowPoint& point) noexcept;
 
 /// How far the row's point has moved since then, relative to its wall point and across the vessel, as a fraction of the
 /// clearance. `vessel`: all its node positions.

@@ -121,11 +121,12 @@ class WallContact final : public Constraint {
     const std::size_t count = evaluation.count < 0 ? active_.size() : static_cast<std::size_t>(evaluation.count);
     for (std::size_t r = 0; r < count; ++r) {
       const Row& row = rows_[active_[first + r]];
-      Found& found = found_[first + r];
+      Found& found = found_[active_[first + r]];
       const bool again = evaluation.beyond_window && found.point.closest.location == contact::Location::window_edge;
       if (evaluation.state == 0 || found.state != evaluation.state || again) {
         found.point = locate(row, wall, wire, evaluation.beyond_window ? reach_of(row) : row.window);
         found.state = evaluation.state;
+        found.beyond_window = evaluation.beyond_window;
         found.expanded = false;
       }
       if (found.point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
@@ -151,8 +152,13 @@ class WallContact final : public Constraint {
   Status accept(const PlaceTables& at) noexcept override {
     const Wall wall = wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
-    for (Row& row : rows_) refer_to(row, wall, wire, reach_of(row));
-    forget();
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      Row& row = rows_[r];
+      Found& found = found_[r];
+      const bool known = at.state() != 0 && found.state == at.state() && serves(row, found);
+      refer_to(row, wall, known ? found.point : locate(row, wall, wire, reach_of(row)));
+      found.state = 0;
+    }
     return {};
   }
 
@@ -224,10 +230,11 @@ class WallContact final : public Constraint {
   }
 
  private:
-  /// What the last evaluation of a row found: further ones at that state have the same closest point.
+  /// What the last evaluation of a row found: further ones at that state, and its acceptance, have the same closest
+  /// point.
   struct Found {
     std::uint64_t state = 0;  // 0: nothing
-    bool expanded = false;
+    bool beyond_window = false, expanded = false;
     RowPoint point;
     contact::GapExpansion expansion;
   };
@@ -247,6 +254,14 @@ class WallContact final : public Constraint {
   static bool covers(const Row& row, const RowPoint& point) noexcept {
     const double sigma = point.closest.at.sigma();
     return sigma >= row.window.low && sigma <= row.window.high;
+  }
+
+  /// Whether a search of all that the row can reach would have ended at the same place, by the same steps.
+  bool serves(const Row& row, const Found& found) const noexcept {
+    if (found.point.closest.location == contact::Location::window_edge) return false;
+    if (found.beyond_window || !row.searches) return true;
+    const bool inside = row.sigma < row.window.high || row.window.high == vessel_.nodes - 1.0;
+    return inside && row.sigma >= row.window.low;
   }
 
   void check(const ConstraintScene& scene) const {
@@ -337,7 +352,7 @@ class WallContact final : public Constraint {
     row.end_sigma[0] = row.extremal ? sigma[first] : row.sigma;
     row.end_sigma[1] = row.extremal ? sigma[first + 1] : row.sigma;
     cover(row);
-    refer_to(row, wall, wire_.start, row.window);
+    refer_to(row, wall, locate(row, wall, wire_.start, row.window));
     cover(row);
     rows_.push_back(row);
   }
@@ -391,10 +406,7 @@ class WallContact final : public Constraint {
     } else {
       select_segments();
     }
-    found_.assign(active_.size(), {});
-  }
-
-  void forget() {
+    found_.resize(rows_.size());
     for (Found& found : found_) found.state = 0;
   }
 
@@ -469,7 +481,7 @@ class WallContact final : public Constraint {
   std::vector<int> node_row_, chord_row_;     // per wire node and segment: its row, −1 where there is none
   std::vector<SegmentState> segments_state_;  // per segment; under segment-wise contact only
   std::vector<std::size_t> active_;           // rows that stand in the problem
-  mutable std::vector<Found> found_;          // of active_
+  mutable std::vector<Found> found_;          // of rows_
 };
 
 }  // namespace

@@ -72,6 +72,7 @@ class Assembly final : public Problem, public PlaceTables {
 
   /// Table of y at the state last evaluated; null where the site does not exist.
   const double* table(int curve, Site site) const noexcept override;
+  std::uint64_t state() const noexcept override { return state_; }
 
   // What the certificate and the result document read. Each brings the state up to date first.
 
