@@ -36,10 +36,12 @@ std::uint64_t new_state() noexcept {
 Assembly::Assembly(Scene& scene) : scene_(scene) {
   number_unknowns();
   make_tables();
-  make_rows();
+  number_rows();
+  read_rows();
   q_.assign(at(scene_.coordinates), 0.0);
   term_energy_.assign(scene_.energies.size(), 0.0);
   make_scales();
+  make_lasting_patterns();
   make_patterns();
 
   const std::vector<double> start = scene_.start_coordinates();
@@ -77,12 +79,12 @@ Status Assembly::update_places(Span<const double> q, bool derivatives) {
   std::copy(q.begin(), q.end(), q_.begin());
   has_places_ = has_idle_places_ = has_energy_ = has_jacobians_ = has_rows_ = has_row_jacobians_ = guard_checked_ =
       false;
-  state_ = new_state();
+  state_ = place_state_ = new_state();
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = derivatives ? table.update_values_and_jacobian(curve_q(table.curve), state_)
-                                : table.update_values(curve_q(table.curve), state_);
+    Status status = derivatives ? table.update_values_and_jacobian(curve_q(table.curve), place_state_)
+                                : table.update_values(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_places_ = true;
@@ -95,7 +97,7 @@ Status Assembly::update_idle_places() {
   for (SiteTable& table : tables_) {
     if (table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = table.update_values(curve_q(table.curve), state_);
+    Status status = table.update_values(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_idle_places_ = true;
@@ -127,7 +129,7 @@ Status Assembly::update_jacobians() {
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = table.update_jacobian(curve_q(table.curve), state_);
+    Status status = table.update_jacobian(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_jacobians_ = true;
@@ -335,7 +337,7 @@ Status Assembly::lagrangian_hessian(Span<const double> q, double energy_factor, 
   if (Status status = add_row_hessians(multipliers, values); !status.ok()) return status;
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
-    Status status = table.update_curvature(curve_q(table.curve), state_);
+    Status status = table.update_curvature(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve_of(table).name + "'");
     table.add_hessian(energy_factor, values.data());
   }
@@ -407,7 +409,8 @@ bool Assembly::epoch_due() const noexcept {
 Status Assembly::new_epoch() noexcept {
   epoch_failure_ = bind_rows();
   if (!epoch_failure_.ok()) return epoch_failure_;
-  has_places_ = false;  // rows may read sites that nothing has read before
+  has_rows_ = has_row_jacobians_ = guard_checked_ = false;
+  state_ = new_state();
   ++epochs_;
   return {};
 }
@@ -425,7 +428,11 @@ Status Assembly::bind_rows() noexcept {
         return Status::failure(Code::failed, "constraint '" + use.label + "' changed its number of rows in an epoch");
       }
     }
-    make_rows();
+    if (rows_stay()) return {};
+    if (read_rows()) {
+      has_places_ = false;
+      make_lasting_patterns();
+    }
     make_patterns();
   } catch (const std::exception& error) {
     return Status::failure(Code::failed, error.what());
