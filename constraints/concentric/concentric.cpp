@@ -122,6 +122,21 @@ class Concentric final : public Constraint {
     });
   }
 
+  Status bind(const PlaceTables& at, RowDeclaration& out) noexcept override {
+    return guard([&] {
+      const contact::Centerline centerline = centerline_at(at.table(vessel_.index, Site::node));
+      const double* wire = at.table(wire_.index, Site::node);
+      const std::vector<double> sigma = contact::places_at(wire_, centerline, wire, nullptr, first_places_);
+      for (Place& place : places_) {
+        place.sigma = sigma[static_cast<std::size_t>(place.node)];
+        cover(place);
+        const contact::CurvePoint q = contact::evaluate(centerline, contact::coordinate(place.sigma, vessel_.nodes));
+        turn_axes(place, normalized(vector(q.slope)));
+      }
+      describe(out);
+    });
+  }
+
   Status report(const PlaceTables& at, std::vector<RowReport>& out) const noexcept override {
     return guard([&] {
       const contact::Centerline centerline = centerline_at(at.table(vessel_.index, Site::node));
@@ -159,13 +174,14 @@ class Concentric final : public Constraint {
 
   void make_places(const ConstraintScene& scene) {
     const contact::Centerline centerline = centerline_at(vessel_.start);
-    const std::vector<double> sigma = contact::first_places(scene, centerline);
+    first_places_ = contact::first_places(scene, centerline);
     places_.clear();
+    tangents_.clear();
     for (int i = 0; i < wire_.nodes; ++i) {
       if (position_held(wire_, i)) continue;
       Place place;
       place.node = i;
-      place.sigma = sigma[static_cast<std::size_t>(i)];
+      place.sigma = first_places_[static_cast<std::size_t>(i)];
       cover(place);
       const contact::CurvePoint q = contact::evaluate(centerline, contact::coordinate(place.sigma, vessel_.nodes));
       set_axes(place, lie::frame_from_tangent(normalized(vector(q.slope))));
@@ -313,6 +329,7 @@ class Concentric final : public Constraint {
   int segments_ = 2, dimension_ = 3, rows_each_ = 2;
   CurveView wire_, vessel_;
   std::vector<double> no_radius_;
+  std::vector<double> first_places_;  // per wire node: σ at the start of the scene
   std::vector<Place> places_;
   std::vector<Vector3> tangents_;  // at the accepted state
 };

@@ -21,14 +21,12 @@ RowPoint locate(const Row& row, const Wall& wall, const double* wire, contact::W
   point.wire.points = wire + row.node * dimension;
   point.wire.t = row.t;
   for (int k = 0; k < 2; ++k) point.wire.radius[k] = sign(wall) * row.radius[k];
-  if (row.extremal) {
+  if (row.extremal && !row.midway) {
     const contact::ChordExtremum extremum =
-        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma);
+        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma, chord_margin);
     point.wire.t = extremum.t;
     point.wire.extremal = extremum.interior;
     point.closest = extremum.closest;
-    point.lesser_end = extremum.lesser_end;
-    std::copy_n(extremum.end_sigma, 2, point.end_sigma);
   } else {
     double x[3] = {};
     point.wire.position(dimension, x);
@@ -76,18 +74,23 @@ void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion
   }
 }
 
-void refer_to(Row& row, const Wall& wall, const RowPoint& point) noexcept {
+void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window, const RowPoint* known) noexcept {
+  const RowPoint point = known != nullptr ? *known : locate(row, wall, wire, window);
   const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
   const int dimension = wall.centerline.dimension;
   double x[3] = {};
   point.wire.position(dimension, x);
   row.t = point.wire.t;
-  row.interior = point.wire.extremal;
   row.sigma = point.closest.at.sigma();
-  for (int k = 0; k < 2; ++k) row.end_sigma[k] = row.extremal ? point.end_sigma[k] : row.sigma;
+  for (double& sigma : row.end_sigma) sigma = row.sigma;
+  if (row.extremal) {
+    const contact::ChordExtremum extremum =
+        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma, chord_margin);
+    row.bend = extremum.bend;
+    std::copy_n(extremum.end_sigma, 2, row.end_sigma);
+  }
   row.stencil = contact::stencil(wall.centerline.interpolation, point.closest.at, wall.centerline.nodes);
   row.gap = point.gap;
-  row.lesser_end = point.lesser_end;
   row.clearance = point.closest.clearance;
   const double speed = std::hypot(q.slope[0], q.slope[1], q.slope[2]);
   for (int k = 0; k < dimension; ++k) {

@@ -11,7 +11,7 @@ namespace bowstring::wall_contact {
 enum class Discretisation : int {
   same_index,    ///< at each node, against the vessel's node of the same number
   node_wise,     ///< at each node, or at more fixed stations per segment, against the closest point
-  segment_wise,  ///< one per segment, wherever along its chord the gap is largest
+  segment_wise,  ///< at each node, and one per segment wherever along its chord the gap is largest
 };
 
 /// The wall as a row sees it.
@@ -25,9 +25,9 @@ struct Wall {
 struct Row {
   int node = 0, nodes = 1;    ///< reads `nodes` wire nodes from `node` on
   double t = 0.0;             ///< x = (1 − t) p_node + t p_{node+1}, at the accepted state
-  bool extremal = false;      ///< t is searched for: where the gap is largest
-  bool interior = false;      ///< and lies between the nodes, at the accepted state
-  double lesser_end = 0.0;    ///< gap at the node of a chord where it is smaller, mm
+  bool extremal = false;      ///< t is searched for: where the gap is largest between the nodes …
+  bool midway = false;        ///< … unless the wall bends away there: then t = 1/2
+  double bend = 0.0;          ///< how much it does, at the accepted state (ChordExtremum), mm
   bool searches = true;       ///< σ is searched for; otherwise it is given
   double radius[2] = {};      ///< of the wire at its nodes, mm
   contact::Window window;     ///< of σ
@@ -46,10 +46,12 @@ struct Row {
 struct RowPoint {
   contact::WirePoint wire;
   contact::ClosestPoint closest;
-  double gap = 0.0;         ///< ≤ 0 on the right side, mm
-  double lesser_end = 0.0;  ///< gap at the node of a chord where it is smaller, mm
-  double end_sigma[2] = {};
+  double gap = 0.0;  ///< ≤ 0 on the right side, mm
 };
+
+/// A chord's own row keeps this share of a segment away from its nodes, which have rows of their own: no two rows
+/// coincide. What that may hide of the chord between is a few 1e-8 of its height above the nodes.
+inline constexpr double chord_margin = 1e-4;
 
 /// `wire`: all its node positions. `window_edge` in the closest point where that is not in the window.
 RowPoint locate(const Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept;
@@ -67,8 +69,9 @@ void write_gradient(const Row& row, const Wall& wall, const contact::GapExpansio
 void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, double weight,
                    bool all_places, double* out) noexcept;
 
-/// Makes the state at which the row is at `point` its accepted one.
-void refer_to(Row& row, const Wall& wall, const RowPoint& point) noexcept;
+/// Makes the state the row's accepted one. `point`: what `locate` answers there, where that is known.
+void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window,
+              const RowPoint* point = nullptr) noexcept;
 
 /// How far the row's point has moved since then, relative to its wall point and across the vessel, as a fraction of the
 /// clearance. `vessel`: all its node positions.

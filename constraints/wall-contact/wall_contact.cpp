@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -43,9 +44,7 @@ constexpr ParameterDeclaration schema[] = {
 
 constexpr double rebind_margin = 0.2;       // of the window's half width
 constexpr double automatic_spacing = 0.65;  // of the smallest clearance
-constexpr double touching = 0.1;            // of the clearance: a node closer to its wall may be about to carry force
-constexpr int most_changes = 5;             // of one segment's row: it then stays as it is
-constexpr double covered = 1e-9;            // mm: what a chord may exceed its nodes by before it needs a row of its own
+constexpr double straight = 1e-9;           // mm: a chord whose gap bends less may have its row at either place
 
 contact::GapForm gap_form_of(const std::string& name) {
   if (name == "distance") return contact::GapForm::distance;
@@ -58,14 +57,6 @@ std::string number(double value) {
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
-
-/// The row of one wire segment under segment-wise contact: where the gap is largest along its chord; or, where both its
-/// nodes are about to touch and the wall bends away between them, at the node that `node_row_of` gives it: the largest
-/// gap would jump from one node to the other, and the rows of neighbours would coincide.
-struct SegmentState {
-  bool by_node = false;
-  int changes = 0;
-};
 
 /// A wire on its side of a vessel's wall. Preprint eqs. (9) and (11), with the gap of a tube whose radius varies.
 template <Discretisation discretisation>
@@ -94,10 +85,9 @@ class WallContact final : public Constraint {
       wire_radius_.assign(static_cast<std::size_t>(wire_.nodes), 0.0);
       if (scene.radius[0] != nullptr) wire_radius_.assign(scene.radius[0], scene.radius[0] + wire_.nodes);
       segments_ = window_.segments(scene);
-      const std::vector<double> sigma = first_places(scene);
-      measure_clearance(sigma);
-      make_rows(sigma);
-      select();
+      first_places_ = first_places(scene);
+      measure_clearance(first_places_);
+      make_rows(first_places_, wall_of(vessel_.start), wire_.start);
       describe(out);
       out.inside_lumen = !outside_;
       warn(out);
@@ -118,10 +108,10 @@ class WallContact final : public Constraint {
     double* jacobian = evaluation.jacobian.data();
     double* hessian = evaluation.hessian.data();
     const auto first = static_cast<std::size_t>(evaluation.first);
-    const std::size_t count = evaluation.count < 0 ? active_.size() : static_cast<std::size_t>(evaluation.count);
+    const std::size_t count = evaluation.count < 0 ? rows_.size() : static_cast<std::size_t>(evaluation.count);
     for (std::size_t r = 0; r < count; ++r) {
-      const Row& row = rows_[active_[first + r]];
-      Found& found = found_[active_[first + r]];
+      const Row& row = rows_[first + r];
+      Found& found = found_[first + r];
       const bool again = evaluation.beyond_window && found.point.closest.location == contact::Location::window_edge;
       if (evaluation.state == 0 || found.state != evaluation.state || again) {
         found.point = locate(row, wall, wire, evaluation.beyond_window ? reach_of(row) : row.window);
@@ -153,12 +143,11 @@ class WallContact final : public Constraint {
     const Wall wall = wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
-      Row& row = rows_[r];
-      Found& found = found_[r];
-      const bool known = at.state() != 0 && found.state == at.state() && serves(row, found);
-      refer_to(row, wall, known ? found.point : locate(row, wall, wire, reach_of(row)));
-      found.state = 0;
+      const Found& found = found_[r];
+      const bool known = at.state() != 0 && found.state == at.state() && serves(rows_[r], found);
+      refer_to(rows_[r], wall, wire, reach_of(rows_[r]), known ? &found.point : nullptr);
     }
+    forget();
     return {};
   }
 
@@ -166,38 +155,46 @@ class WallContact final : public Constraint {
     const double* wire = at.table(wire_.index, Site::node);
     const double* vessel = at.table(vessel_.index, Site::node);
     Travel largest;
-    for (std::size_t r = 0; r < active_.size(); ++r) {
-      const double fraction = travelled(rows_[active_[r]], dimension_, wire, vessel);
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const double fraction = travelled(rows_[r], dimension_, wire, vessel);
       if (fraction > largest.fraction_of_clearance) largest = {fraction, static_cast<int>(r)};
     }
     return largest;
   }
 
   bool rebind_due() const noexcept override {
-    const bool near_edge = std::any_of(active_.begin(), active_.end(), [&](std::size_t r) {
-      const Row& row = rows_[r];
+    const bool near_edge = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) {
       if (!row.searches) return false;
       const double margin = rebind_margin * (segments_ + 0.5);
       const auto [first, last] = std::minmax(row.end_sigma[0], row.end_sigma[1]);
       return contact::near_edge(row.window, first, last, margin, vessel_.nodes);
     });
-    if (near_edge) return true;
-    for (int segment = 0; segment < static_cast<int>(segments_state_.size()); ++segment) {
-      if (changes(segment)) return true;
-    }
-    return false;
+    return near_edge || std::any_of(rows_.begin(), rows_.end(), changes);
   }
 
   Status rebind(RowDeclaration& out) noexcept override {
     return guard([&] {
-      for (Row& row : rows_) cover(row);
-      for (int segment = 0; segment < static_cast<int>(segments_state_.size()); ++segment) {
-        if (!changes(segment)) continue;
-        SegmentState& state = segments_state_[static_cast<std::size_t>(segment)];
-        state.by_node = !state.by_node;
-        ++state.changes;
+      for (Row& row : rows_) {
+        cover(row);
+        if (changes(row)) row.midway = !row.midway;
       }
-      select();
+      forget();
+      describe(out);
+    });
+  }
+
+  Status bind(const PlaceTables& at, RowDeclaration& out) noexcept override {
+    return guard([&] {
+      const Wall wall = wall_at(at);
+      const double* wire = at.table(wire_.index, Site::node);
+      if (discretisation == Discretisation::same_index) {
+        make_rows(first_places_, wall, wire);
+      } else {
+        std::vector<double> radius = wire_radius_;
+        if (outside_) std::transform(radius.begin(), radius.end(), radius.begin(), std::negate<>());
+        make_rows(contact::places_at(wire_, wall.centerline, wire, radius.data(), first_places_), wall, wire);
+        for (Row& row : rows_) settle(row, wall, wire);
+      }
       describe(out);
     });
   }
@@ -207,8 +204,7 @@ class WallContact final : public Constraint {
       const Wall wall = wall_at(at);
       const double* wire = at.table(wire_.index, Site::node);
       out.clear();
-      for (const std::size_t r : active_) {
-        const Row& row = rows_[r];
+      for (const Row& row : rows_) {
         const RowPoint point = locate(row, wall, wire, reach_of(row));
         const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
         double x[3] = {};
@@ -309,7 +305,7 @@ class WallContact final : public Constraint {
 
   double longest_edge() const { return *std::max_element(wire_.edge_length, wire_.edge_length + wire_.nodes - 1); }
 
-  /// Rows per segment; 0: every segment finds the place itself.
+  /// Rows per segment; 0: one at its first node, and one that finds its place itself.
   int stations() const {
     if (discretisation == Discretisation::segment_wise) return 0;
     if (rows_per_segment_ > 0.0) return static_cast<int>(rows_per_segment_);
@@ -317,28 +313,20 @@ class WallContact final : public Constraint {
   }
 
   /// Rows at every place that may carry one, in order along the wire, each segment's after its first node's.
-  void make_rows(const std::vector<double>& sigma) {
+  /// `sigma`: where each node is bound to, at the state of `wall` and `wire`.
+  void make_rows(const std::vector<double>& sigma, const Wall& wall, const double* wire) {
     const int per_segment = stations();
     rows_.clear();
-    node_row_.assign(static_cast<std::size_t>(wire_.nodes), -1);
-    chord_row_.assign(static_cast<std::size_t>(wire_.nodes - 1), -1);
-    segments_state_.clear();
     for (int i = 0; i < wire_.nodes; ++i) {
-      if (!position_held(wire_, i)) {
-        node_row_[static_cast<std::size_t>(i)] = static_cast<int>(rows_.size());
-        add_row(i, 1, 0.0, sigma);
-      }
+      if (!position_held(wire_, i)) add_row(i, 1, 0.0, sigma, wall, wire);
       if (i == wire_.nodes - 1 || (position_held(wire_, i) && position_held(wire_, i + 1))) continue;
-      for (int k = 1; k < per_segment; ++k) add_row(i, 2, static_cast<double>(k) / per_segment, sigma);
-      if (per_segment > 0) continue;
-      chord_row_[static_cast<std::size_t>(i)] = static_cast<int>(rows_.size());
-      add_row(i, 2, 0.5, sigma);
+      for (int k = 1; k < per_segment; ++k) add_row(i, 2, static_cast<double>(k) / per_segment, sigma, wall, wire);
+      if (per_segment == 0) add_row(i, 2, 0.5, sigma, wall, wire);
     }
-    if (discretisation == Discretisation::segment_wise) segments_state_.resize(chord_row_.size());
+    found_.assign(rows_.size(), {});
   }
 
-  void add_row(int node, int nodes, double t, const std::vector<double>& sigma) {
-    const Wall wall = wall_of(vessel_.start);
+  void add_row(int node, int nodes, double t, const std::vector<double>& sigma, const Wall& wall, const double* wire) {
     const auto first = static_cast<std::size_t>(node);
     Row row;
     row.node = node;
@@ -352,9 +340,20 @@ class WallContact final : public Constraint {
     row.end_sigma[0] = row.extremal ? sigma[first] : row.sigma;
     row.end_sigma[1] = row.extremal ? sigma[first + 1] : row.sigma;
     cover(row);
-    refer_to(row, wall, locate(row, wall, wire_.start, row.window));
+    refer_to(row, wall, wire, row.window);
     cover(row);
+    row.midway = changes(row);
     rows_.push_back(row);
+  }
+
+  /// Moves a row's window until its closest point lies within: a place between two nodes, or on a polyline, is not
+  /// where the nodes on the spline are.
+  void settle(Row& row, const Wall& wall, const double* wire) const {
+    for (int i = 0; i < vessel_.nodes; ++i) {
+      if (locate(row, wall, wire, row.window).closest.location != contact::Location::window_edge) return;
+      refer_to(row, wall, wire, row.window);
+      cover(row);
+    }
   }
 
   std::vector<double> first_places(const ConstraintScene& scene) const {
@@ -378,63 +377,30 @@ class WallContact final : public Constraint {
     row.covers = contact::window_nodes(interpolation_, row.window, vessel_.nodes);
   }
 
-  bool first_end_leads() const { return node_row_.back() < 0 && node_row_.front() >= 0; }
-
-  /// The node that carries the row of a segment by node: its last one, so that in a run of such segments every node has
-  /// one row and the run's first node is held by the chord before it. Counted from the other end where that one alone
-  /// is free. −1 where the node is held.
-  int node_row_of(int segment) const {
-    return node_row_[static_cast<std::size_t>(first_end_leads() ? segment : segment + 1)];
+  /// Whether the accepted state asks for the row of a chord at another place: where the gap is largest between the
+  /// nodes, or, where the wall bends away so that it is largest at one of them and would jump to the other one, midway.
+  static bool changes(const Row& row) noexcept {
+    return row.extremal && (row.midway ? row.bend < -straight : row.bend > straight);
   }
 
-  /// Whether the accepted state asks for the other row of a segment under segment-wise contact.
-  bool changes(int segment) const {
-    const SegmentState& state = segments_state_[static_cast<std::size_t>(segment)];
-    const int index = chord_row_[static_cast<std::size_t>(segment)];
-    if (index < 0 || state.changes == most_changes || node_row_of(segment) < 0) return false;
-    const Row& chord = rows_[static_cast<std::size_t>(index)];
-    if (!state.by_node) return !chord.interior && chord.lesser_end > -touching * chord.clearance;
-    return chord.interior && chord.gap > covered;
-  }
-
-  /// The rows that stand in the problem: their number never changes. Under segment-wise contact one per segment, and
-  /// one at the first node where both ends are free.
-  void select() {
-    active_.clear();
-    if (discretisation != Discretisation::segment_wise) {
-      for (std::size_t r = 0; r < rows_.size(); ++r) active_.push_back(r);
-    } else {
-      select_segments();
-    }
-    found_.resize(rows_.size());
+  void forget() {
     for (Found& found : found_) found.state = 0;
   }
 
-  void select_segments() {
-    if (node_row_.front() >= 0 && node_row_.back() >= 0) active_.push_back(static_cast<std::size_t>(node_row_.front()));
-    for (int i = 0; i < wire_.nodes - 1; ++i) {
-      const int chord = chord_row_[static_cast<std::size_t>(i)];
-      if (chord < 0) continue;
-      const bool by_node = segments_state_[static_cast<std::size_t>(i)].by_node;
-      active_.push_back(static_cast<std::size_t>(by_node ? node_row_of(i) : chord));
-    }
-  }
-
   void describe(RowDeclaration& out) const {
-    out.rows = static_cast<int>(active_.size());
+    out.rows = static_cast<int>(rows_.size());
     out.in_parts = true;
     out.place_begin.assign(1, 0);
     out.places.clear();
-    for (const std::size_t r : active_) {
-      const Row& row = rows_[r];
+    for (const Row& row : rows_) {
       for (int k = 0; k < row.nodes; ++k) out.places.push_back({wire_.index, Site::node, row.node + k});
       for (int k = 0; k < row.covers.count; ++k) {
         out.places.push_back({vessel_.index, Site::node, row.covers.first + k});
       }
       out.place_begin.push_back(static_cast<int>(out.places.size()));
     }
-    out.lower.assign(active_.size(), -std::numeric_limits<double>::infinity());
-    out.upper.assign(active_.size(), 0.0);
+    out.lower.assign(rows_.size(), -std::numeric_limits<double>::infinity());
+    out.upper.assign(rows_.size(), 0.0);
   }
 
   void warn(RowDeclaration& out) const {
@@ -476,12 +442,10 @@ class WallContact final : public Constraint {
   CurveView wire_, vessel_;
   int dimension_ = 3;
   std::vector<double> radius_, wire_radius_;
+  std::vector<double> first_places_;  // per wire node: σ at the start of the scene
   double smallest_clearance_ = 0.0;
   std::vector<Row> rows_;
-  std::vector<int> node_row_, chord_row_;     // per wire node and segment: its row, −1 where there is none
-  std::vector<SegmentState> segments_state_;  // per segment; under segment-wise contact only
-  std::vector<std::size_t> active_;           // rows that stand in the problem
-  mutable std::vector<Found> found_;          // of rows_
+  mutable std::vector<Found> found_;  // per row
 };
 
 }  // namespace

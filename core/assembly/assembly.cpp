@@ -33,23 +33,39 @@ std::uint64_t new_state() noexcept {
 
 }  // namespace
 
-Assembly::Assembly(Scene& scene) : scene_(scene) {
+Assembly::Assembly(Scene& scene, Span<const double> start, const Assembly* like) : scene_(scene) {
   number_unknowns();
   make_tables();
+  q_.assign(at(scene_.coordinates), 0.0);
+  if (!start.empty()) place_rows_at(start);
   number_rows();
   read_rows();
-  q_.assign(at(scene_.coordinates), 0.0);
   term_energy_.assign(scene_.energies.size(), 0.0);
   make_scales();
-  make_lasting_patterns();
-  make_patterns();
+  if (like != nullptr && reads_like(*like)) {
+    take_patterns(*like);
+  } else {
+    make_lasting_patterns();
+    make_patterns();
+  }
 
-  const std::vector<double> start = scene_.start_coordinates();
-  if (Status status = accept(start); !status.ok()) throw std::runtime_error(status.text);
+  const std::vector<double> own = scene_.start_coordinates();
+  if (Status status = accept(start.empty() ? own : start); !status.ok()) throw std::runtime_error(status.text);
   if (epoch_due()) {
     if (Status status = new_epoch(); !status.ok()) throw std::runtime_error(status.text);
     epochs_ = 1;
   }
+}
+
+void Assembly::place_rows_at(Span<const double> q) {
+  Status status = update_places(q);
+  if (status.ok()) status = update_idle_places();
+  if (status.ok()) {
+    status = place_rows(
+        [](Constraint& constraint, const PlaceTables& at, RowDeclaration& out) { return constraint.bind(at, out); });
+  }
+  if (!status.ok()) throw std::runtime_error(status.text);
+  has_places_ = false;  // rows may read sites that nothing has read before
 }
 
 SiteTable* Assembly::find_table(int curve, Site site) noexcept {
@@ -415,19 +431,26 @@ Status Assembly::new_epoch() noexcept {
   return {};
 }
 
+Status Assembly::place_rows(Binding bind) {
+  for (ConstraintUse& use : scene_.constraints) {
+    const int rows = use.rows.rows;
+    Status status = bind(*use.constraint, *this, use.rows);
+    if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
+    if (const std::string flaw = flaw_of(use.rows); !flaw.empty()) {
+      return Status::failure(Code::failed, "constraint '" + use.label + "' " + flaw);
+    }
+    if (use.rows.rows != rows) {
+      return Status::failure(Code::failed, "constraint '" + use.label + "' changed its number of rows in an epoch");
+    }
+  }
+  return {};
+}
+
 Status Assembly::bind_rows() noexcept {
   try {
-    for (ConstraintUse& use : scene_.constraints) {
-      const int rows = use.rows.rows;
-      Status status = use.constraint->rebind(use.rows);
-      if (!status.ok()) return named(std::move(status), "constraint '" + use.label + "'");
-      if (const std::string flaw = flaw_of(use.rows); !flaw.empty()) {
-        return Status::failure(Code::failed, "constraint '" + use.label + "' " + flaw);
-      }
-      if (use.rows.rows != rows) {
-        return Status::failure(Code::failed, "constraint '" + use.label + "' changed its number of rows in an epoch");
-      }
-    }
+    Status status = place_rows(
+        [](Constraint& constraint, const PlaceTables&, RowDeclaration& out) { return constraint.rebind(out); });
+    if (!status.ok()) return status;
     if (rows_stay()) return {};
     if (read_rows()) {
       has_places_ = false;

@@ -39,9 +39,10 @@ struct RowOrigin {
 /// summed in a fixed order.
 class Assembly final : public Problem, public PlaceTables {
  public:
-  /// The scene outlives the assembly. Throws std::runtime_error naming the curve or constraint that fails at State 1
-  /// or at the start.
-  explicit Assembly(Scene& scene);
+  /// The scene outlives the assembly. `start`: the coordinates that rows are bound at; empty: the scene's own start,
+  /// which they have been declared at. Throws std::runtime_error naming the curve or constraint that fails at State 1
+  /// or at the start. `like`: another assembly, whose patterns are taken over where its rows read the same places.
+  explicit Assembly(Scene& scene, Span<const double> start = {}, const Assembly* like = nullptr);
 
   const ProblemSummary& summary() const noexcept override { return summary_; }
   int unknowns() const noexcept override { return free_count_; }
@@ -112,6 +113,10 @@ class Assembly final : public Problem, public PlaceTables {
   void number_unknowns();
   void make_tables();
   void number_rows();
+  /// Lets every constraint choose its rows' places anew.
+  using Binding = Status (*)(Constraint&, const PlaceTables&, RowDeclaration&);
+  Status place_rows(Binding bind);
+  void place_rows_at(Span<const double> q);
   Status bind_rows() noexcept;
   /// Reads the constraints' declarations. Answers whether that made tables be read that nothing had read before.
   bool read_rows();
@@ -121,6 +126,8 @@ class Assembly final : public Problem, public PlaceTables {
   /// What of the patterns lasts from epoch to epoch, as long as no further tables are read.
   void make_lasting_patterns();
   void make_patterns();
+  bool reads_like(const Assembly& other) const noexcept;
+  void take_patterns(const Assembly& other);
   /// A row of a closure site: its entries begin at `first` of the table's Jacobian and stand at `position`.
   void note_closure_row(int table, int first, const int* position);
   /// What closure rows alone say of the unknowns.

@@ -251,6 +251,15 @@ void ConstraintRows::locate(const BlockLayout& layout, const HessianPattern& hes
   }
 }
 
+void ConstraintRows::take_positions(const ConstraintRows& other) {
+  jacobian_position = other.jacobian_position;
+  hessian_position = other.hessian_position;
+  hessian_position_begin = other.hessian_position_begin;
+  blocks = other.blocks;
+  base = other.base;
+  length = other.length;
+}
+
 const ConstraintRows::Read& ConstraintRows::read_of(int row, const RowSupport& support, int k) const noexcept {
   return reads[at(read_begin[at(row)] + support.place(k))];
 }

@@ -58,6 +58,9 @@ struct ConstraintRows {
   void add_patterns(const BlockLayout& layout, RowBlocks& row_blocks, JacobianPattern& jacobian_pattern);
   void locate(const BlockLayout& layout, const HessianPattern& hessian_pattern);
 
+  /// Those that `locate` has found for the same rows.
+  void take_positions(const ConstraintRows& other);
+
   /// Whether a constraint may say so of a row.
   bool fits(int row, const RowSupport& support) const noexcept;
   /// The first row with a derivative that is not finite; −1: none.

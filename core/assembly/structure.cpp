@@ -268,6 +268,55 @@ void Assembly::make_patterns() {
   make_order();
 }
 
+/// Whether every place of every site and row depends on the same unknowns as in another assembly, and to the same
+/// order.
+bool Assembly::reads_like(const Assembly& other) const noexcept {
+  const auto same_table = [](const SiteTable& a, const SiteTable& b) {
+    return a.curve == b.curve && a.declaration->site == b.declaration->site && a.count() == b.count() &&
+           a.values() == b.values() && a.width() == b.width() && a.read == b.read && a.bends() == b.bends() &&
+           a.modulus.empty() == b.modulus.empty() && a.hessian_first() == b.hessian_first() &&
+           a.hessian_width() == b.hessian_width() && a.free_unknown == b.free_unknown;
+  };
+  const auto same_read = [](const ConstraintRows::Read& a, const ConstraintRows::Read& b) {
+    return a.table == b.table && a.index == b.index && a.values == b.values && a.width == b.width &&
+           a.identity == b.identity;
+  };
+  const auto same_rows = [&](const ConstraintRows& a, const ConstraintRows& b) {
+    return a.first_row == b.first_row && a.read_begin == b.read_begin && a.unknown == b.unknown &&
+           std::equal(a.reads.begin(), a.reads.end(), b.reads.begin(), b.reads.end(), same_read);
+  };
+  return blocks_.begin == other.blocks_.begin &&
+         std::equal(tables_.begin(), tables_.end(), other.tables_.begin(), other.tables_.end(), same_table) &&
+         std::equal(constraints_.begin(), constraints_.end(), other.constraints_.begin(), other.constraints_.end(),
+                    same_rows);
+}
+
+/// What `make_lasting_patterns` and `make_patterns` would make.
+void Assembly::take_patterns(const Assembly& other) {
+  lasting_pattern_ = other.lasting_pattern_;
+  hessian_pattern_ = other.hessian_pattern_;
+  jacobian_pattern_ = other.jacobian_pattern_;
+  closure_position_ = other.closure_position_;
+  closure_runs_ = other.closure_runs_;
+  closure_in_run_ = other.closure_in_run_;
+  order_ = other.order_;
+  border_ = other.border_;
+  whole_curve_ = other.whole_curve_;
+  is_position_ = other.is_position_;
+  closure_readers_ = other.closure_readers_;
+  node_fraction_ = other.node_fraction_;
+  local_rows_found_ = other.local_rows_found_;
+  local_rows_of_constraints_ = other.local_rows_of_constraints_;
+  local_rows_ = other.local_rows_;
+  local_unknowns_ = other.local_unknowns_;
+  for (std::size_t t = 0; t < tables_.size(); ++t) {
+    tables_[t].lasting_position = other.tables_[t].lasting_position;
+    tables_[t].hessian_position = other.tables_[t].hessian_position;
+    tables_[t].all_free = other.tables_[t].all_free;
+  }
+  for (std::size_t c = 0; c < constraints_.size(); ++c) constraints_[c].take_positions(other.constraints_[c]);
+}
+
 void Assembly::note_closure_row(int table, int first, const int* position) {
   const int width = tables_[at(table)].width();
   bool in_order = position[0] >= 0;

@@ -11,6 +11,7 @@
 #include "core/composition/resolved.hpp"
 #include "core/composition/settings.hpp"
 #include "core/composition/sources.hpp"
+#include "core/composition/start.hpp"
 #include "core/composition/terms.hpp"
 #include "core/composition/vocabulary.hpp"
 #include "core/composition/without_effect.hpp"
@@ -55,6 +56,7 @@ Composition read_composition(const Node& root, Reading& reading) {
   composition.enforcement = read_enforcement(root, reading);
   composition.solver = read_solver(root, reading);
   composition.certificate = read_certificate(root, report);
+  composition.start = read_start(root, report);
   check_duplicates(root, report);
   return composition;
 }
@@ -98,8 +100,10 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
     for (const ComponentChoice* choice : components_of(composition)) {
       add_paths(choice->parameters, composition.input_files);
     }
+    if (!composition.start.from.empty()) composition.input_files.push_back(composition.start.from);
+    composition.plugin_path = sources->plugin_path;
     if (report.empty() && outcome.plugin_failure.ok()) {
-      composition.resolved_json = resolved_json(composition, sources->plugin_path);
+      composition.resolved_json = resolved_json(composition);
       composition.without_effect = without_effect(sources->root, composition);
       outcome.composition = std::move(composition);
     }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/composition/recorded_state.hpp"
 #include "core/interfaces/curve.hpp"
 #include "core/interfaces/registry.hpp"
 
@@ -99,6 +101,14 @@ struct CertificateTable {
   std::string require = "none";   ///< "none" | "minimum"
 };
 
+/// Where a solve starts, if not at the composition's own start.
+struct StartTable {
+  std::string from;      ///< a result document, absolute; "": none
+  std::string position;  ///< of `from`
+  std::string name;      ///< "the start 'result.json'", for messages
+  std::shared_ptr<const RecordedState> state;
+};
+
 /// A checked, resolved composition: every reference holds, every number is in mm, N, rad.
 struct Composition {
   int schema = 1;
@@ -113,7 +123,9 @@ struct Composition {
   std::vector<ConstraintTable> constraints;
   ComponentChoice enforcement, solver;
   CertificateTable certificate;
-  std::string resolved_json;  ///< everything above with defaults filled in, as the result document holds it
+  StartTable start;
+  std::vector<std::string> plugin_path;  ///< absolute
+  std::string resolved_json;             ///< everything above with defaults filled in, as the result document holds it
   std::vector<std::string> warnings;
   std::vector<std::string> without_effect;  ///< declared, allowed, and idle in this scene: for `explain`
 };

@@ -180,11 +180,11 @@ Json certificate_json(const CertificateTable& certificate) {
 
 }  // namespace
 
-std::string resolved_json(const Composition& composition, const std::vector<std::string>& plugin_path) {
+std::string resolved_json(const Composition& composition) {
   Json root;
   root["schema"] = composition.schema;
   root["title"] = composition.title;
-  if (!plugin_path.empty()) root["plugin-path"] = plugin_path;
+  if (!composition.plugin_path.empty()) root["plugin-path"] = composition.plugin_path;
   root["scene"]["dimension"] = composition.dimension;
   for (const VesselTable& vessel : composition.vessels)
     root["vessel"].push_back(vessel_json(vessel, composition.dimension));
@@ -196,6 +196,7 @@ std::string resolved_json(const Composition& composition, const std::vector<std:
   root["enforcement"] = component_json(composition.enforcement);
   root["solver"] = component_json(composition.solver);
   root["certificate"] = certificate_json(composition.certificate);
+  if (!composition.start.from.empty()) root["start"]["from"] = composition.start.from;
   return root.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -11,6 +11,6 @@ namespace bowstring {
 /// bare numbers in the declared units, and text with a unit where the unit decides what is meant. Numbers in the
 /// shortest form that gives the same double back (at most 17 digits), always in the same order. Written as TOML
 /// again, it resolves to itself.
-std::string resolved_json(const Composition& composition, const std::vector<std::string>& plugin_path);
+std::string resolved_json(const Composition& composition);
 
 }  // namespace bowstring

@@ -10,26 +10,26 @@ const std::vector<std::string>& list_table_names() {
 }
 
 const std::vector<std::string>& single_table_names() {
-  static const std::vector<std::string> names{"scene", "enforcement", "solver", "certificate"};
+  static const std::vector<std::string> names{"scene", "enforcement", "solver", "certificate", "start"};
   return names;
 }
 
 const std::vector<std::string>& top_level_names() {
-  static const std::vector<std::string> names{"schema",      "title",  "base",       "plugin-path", "set",
-                                              "scene",       "vessel", "wire",       "energy",      "constraint",
-                                              "enforcement", "solver", "certificate"};
+  static const std::vector<std::string> names{"schema",      "title",  "base",        "plugin-path", "set",
+                                              "scene",       "vessel", "wire",        "energy",      "constraint",
+                                              "enforcement", "solver", "certificate", "start"};
   return names;
 }
 
 const std::vector<std::string>& overridable_names() {
-  static const std::vector<std::string> names{"title",      "scene",       "vessel", "wire",       "energy",
-                                              "constraint", "enforcement", "solver", "certificate"};
+  static const std::vector<std::string> names{"title",      "scene",       "vessel", "wire",        "energy",
+                                              "constraint", "enforcement", "solver", "certificate", "start"};
   return names;
 }
 
 const std::vector<std::string>& later_table_names() {
-  static const std::vector<std::string> names{"start", "step",     "continuation", "multistart",
-                                              "loss",  "residual", "readout",      "axes"};
+  static const std::vector<std::string> names{"step",     "continuation", "multistart", "loss",
+                                              "residual", "readout",      "axes"};
   return names;
 }
 

@@ -410,7 +410,7 @@ GapShape WirePoint::shape(GapForm form) const noexcept {
 }
 
 ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
-                             double start) noexcept {
+                             double start, double margin) noexcept {
   struct Sample {
     double t = 0.0, slope = 0.0, second = 0.0;  // of sign·h
     ClosestPoint closest;
@@ -428,11 +428,11 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
     sample.second = sign * d.reduced_second;
     return sample;
   };
-  Sample low = at(0.0, start), high = at(1.0, start);
-  const double lesser_end = std::min(sign * low.closest.gap, sign * high.closest.gap);
+  Sample low = at(margin, start), high = at(1.0 - margin, start);
+  const double bend = high.slope - low.slope;
   const double end_sigma[2] = {low.closest.at.sigma(), high.closest.at.sigma()};
   const auto answer = [&](const Sample& sample, bool interior) {
-    return ChordExtremum{sample.t, interior, lesser_end, {end_sigma[0], end_sigma[1]}, sample.closest};
+    return ChordExtremum{sample.t, interior, bend, {end_sigma[0], end_sigma[1]}, sample.closest};
   };
   if (low.closest.location == Location::window_edge) return answer(low, false);
   if (high.closest.location == Location::window_edge) return answer(high, false);

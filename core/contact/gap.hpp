@@ -88,8 +88,8 @@ struct WirePoint {
 /// Where h is extremal along a chord.
 struct ChordExtremum {
   double t = 0.0;
-  bool interior = false;     ///< h_t = 0 there; otherwise at an end
-  double lesser_end = 0.0;   ///< sign·h at the end where it is smaller, mm
+  bool interior = false;  ///< h_t = 0 there; otherwise at an end
+  double bend = 0.0;  ///< sign·h_t at the last end less that at the first: > 0 where the largest h is at an end, mm
   double end_sigma[2] = {};  ///< of the closest points of the chord's two ends
   ClosestPoint closest;
 };
@@ -97,9 +97,9 @@ struct ChordExtremum {
 /// The largest (`sign` = 1) or least (−1) h along a chord between two nodes. Along a segment of a wire h − which is the
 /// distance from a curve that bends at most moderately − has at most one stationary point that matters; of two end
 /// maxima the larger one is taken. `start` is σ of the search at both ends. The location is `window_edge` where a
-/// closest point leaves the window.
+/// closest point leaves the window. The ends are t = margin and 1 − margin.
 ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
-                             double start) noexcept;
+                             double start, double margin = 0.0) noexcept;
 
 /// h to second order at a closest point, in z = (wire nodes, nodes of the segment's stencil), by the envelope theorem:
 /// ∇h = φ_z at fixed σ* and t*, ∇²h = φ_zz − φ_zη φ_ηη⁻¹ φ_ηz with η what moves with z: σ at an interior minimum, t at

@@ -121,6 +121,13 @@ class Constraint {
     (void)out;
     return {};
   }
+  /// Binds every row at a state that may lie far from the one where it was declared, as if it had been accepted step by
+  /// step on the way there: rows must find their places on the vessel by following it, not by a search that could find
+  /// another limb. Row count and meaning stay.
+  virtual Status bind(const PlaceTables& at, RowDeclaration& out) noexcept {
+    Status status = accept(at);
+    return status.ok() ? rebind(out) : status;
+  }
   /// Contact rows describe themselves; other constraints leave `out` empty.
   virtual Status report(const PlaceTables& at, std::vector<RowReport>& out) const noexcept {
     (void)at;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -19,7 +18,7 @@ constexpr int no_slot = std::numeric_limits<int>::min();
 constexpr int most_in_row = 64;          // retained unknowns of one row
 constexpr double dual_slack = 1e-10;     // of 1/ρ
 constexpr double largest_growth = 1e12;  // beyond it the factor says nothing
-constexpr double refined = 1e-13;        // relative residual that needs no further refinement
+constexpr double refined = 1e-9;         // relative residual that needs no further refinement
 
 }  // namespace
 
@@ -31,10 +30,11 @@ void KktSystem::analyse(const Problem& problem, Span<const double> jacobian) {
   scale_.assign(problem.stationarity_scale().begin(), problem.stationarity_scale().end());
   exact_.resize(at(m_));
   for (int r = 0; r < m_; ++r) exact_[at(r)] = problem.row_lower()[at(r)] == problem.row_upper()[at(r)] ? 1 : 0;
-  local_.analyse(problem, jacobian);
+  // Places' own rows and unknowns outlive epochs, and so does their elimination while it is sound.
+  if (!local_.fits(problem) || !local_.update(jacobian)) local_.analyse(problem, jacobian);
   number_slots(problem);
-  shape_matrix(problem);
-  list_entries(problem);
+  shape_matrix();
+  list_entries();
   right_.assign(at(slots_), 0.0);
   border_right_.assign(at(borders_), 0.0);
   work_a_.resize(at(n_));
@@ -82,50 +82,75 @@ void KktSystem::number_slots(const Problem& problem) {
   slots_ = static_cast<int>(unknown_of_slot_.size());
 }
 
-/// Retained unknowns that a row reads, once its place's local ones are eliminated.
-void KktSystem::shape_matrix(const Problem& problem) {
+/// Columns reach as far as the unknowns that one entry of the Hessian or one row couples, once a place's local unknowns
+/// are replaced by its retained ones.
+void KktSystem::shape_matrix() {
+  struct Reach {
+    int low = std::numeric_limits<int>::max(), high = -1;
+    void add(int slot) noexcept {
+      if (slot < 0) return;
+      low = std::min(low, slot);
+      high = std::max(high, slot);
+    }
+    void add(const Reach& other) noexcept {
+      low = std::min(low, other.low);
+      high = std::max(high, other.high);
+    }
+  };
   std::vector<int> last(at(slots_));
   for (int s = 0; s < slots_; ++s) last[at(s)] = s;
-  std::vector<int> slots;
-  const auto add_unknown = [&](int unknown) {
-    const int block = local_.block_of_unknown(unknown);
-    if (block < 0) {
-      if (slot_of_unknown_[at(unknown)] >= 0) slots.push_back(slot_of_unknown_[at(unknown)]);
-      return;
-    }
-    const LocalBlock& place = local_.blocks()[at(block)];
-    for (int p = 0; p < place.retained; ++p) {
-      const int slot = slot_of_unknown_[at(local_.retained(place)[p])];
-      if (slot >= 0) slots.push_back(slot);
-    }
+  const auto couple = [&](const Reach& reach) {
+    // The profile never decreases, so that the columns between reach as far.
+    if (reach.high >= 0) last[at(reach.low)] = std::max(last[at(reach.low)], reach.high);
   };
-  const auto couple = [&] {
-    if (slots.empty()) return;
-    const auto [low, high] = std::minmax_element(slots.begin(), slots.end());
-    last[at(*low)] = std::max(last[at(*low)], *high);
-    // Later columns of the group reach as far; the profile never decreases, so that is implied.
-    slots.clear();
+  std::vector<Reach> of_block(local_.blocks().size());
+  for (std::size_t b = 0; b < of_block.size(); ++b) {
+    const LocalBlock& block = local_.blocks()[b];
+    for (int p = 0; p < block.retained; ++p) of_block[b].add(slot_of_unknown_[at(local_.retained(block)[p])]);
+  }
+  const auto add_unknown = [&](Reach& reach, int unknown) {
+    const int slot = slot_of_unknown_[at(unknown)];
+    if (slot != no_slot) {
+      reach.add(slot);
+    } else {
+      reach.add(of_block[at(local_.block_of_unknown(unknown))]);
+    }
   };
   for (int j = 0; j < n_; ++j) {
+    Reach own;
+    add_unknown(own, j);
+    Reach all = own;
     for (int k = hessian_.begin[at(j)]; k < hessian_.begin[at(j) + 1]; ++k) {
-      add_unknown(j);
-      add_unknown(hessian_.inner[at(k)]);
-      couple();
+      const int i = hessian_.inner[at(k)];
+      const int slot = slot_of_unknown_[at(i)];
+      if (own.low == own.high && slot >= 0) {
+        // The usual entry; of those above the column the first one counts, of those below it the last.
+        if (slot > own.low) {
+          all.high = std::max(all.high, slot);
+        } else {
+          last[at(slot)] = std::max(last[at(slot)], own.high);
+        }
+        continue;
+      }
+      Reach pair = own;
+      add_unknown(pair, i);
+      couple(pair);
     }
+    if (own.low == own.high) couple(all);
   }
   for (int r = 0; r < m_; ++r) {
-    for (int k = jacobian_.begin[at(r)]; k < jacobian_.begin[at(r) + 1]; ++k) add_unknown(jacobian_.inner[at(k)]);
+    Reach row;
+    for (int k = jacobian_.begin[at(r)]; k < jacobian_.begin[at(r) + 1]; ++k) {
+      add_unknown(row, jacobian_.inner[at(k)]);
+    }
     const int block = local_.block_of_row(r);
     const int first = block < 0 ? r : local_.blocks()[at(block)].first_row;
     const int count = block < 0 ? 1 : local_.blocks()[at(block)].left();
-    for (int k = 0; exact_[at(r)] != 0 && k < count; ++k) {
-      if (slot_of_row_[at(first + k)] >= 0) slots.push_back(slot_of_row_[at(first + k)]);
-    }
-    couple();
+    for (int k = 0; exact_[at(r)] != 0 && k < count; ++k) row.add(slot_of_row_[at(first + k)]);
+    couple(row);
   }
   matrix_.shape(std::move(last));
   border_values_.assign(at(borders_ * slots_ + borders_ * borders_), 0.0);
-  (void)problem;
 }
 
 int KktSystem::target(int slot, int other) const noexcept {
@@ -138,8 +163,7 @@ int KktSystem::target(int slot, int other) const noexcept {
   return -1 - (border * slots_ + std::max(slot, other));
 }
 
-void KktSystem::list_entries(const Problem& problem) {
-  (void)problem;
+void KktSystem::list_entries() {
   direct_.clear();
   mixed_entries_.clear();
   pairs_.clear();
@@ -148,9 +172,22 @@ void KktSystem::list_entries(const Problem& problem) {
   pair_target_.clear();
   mixed_entry_.clear();
   mixed_target_.clear();
-  // Entries with local unknowns, gathered by the two places, or by place and retained unknown. Columns come in order,
-  // so that a place's partners are few and recent.
-  std::map<std::pair<int, int>, int> pair_of, mixed_of;
+  // Entries with local unknowns, gathered by the two places, or by place and retained unknown: a place has few
+  // partners.
+  partner_of_block_.assign(local_.blocks().size(), -1);
+  next_partner_.clear();
+  const auto find = [&](int block, int partner, auto&& make) {
+    int* link = &partner_of_block_[at(block)];
+    while (*link >= 0) {
+      Partner& known = next_partner_[at(*link)];
+      if (known.partner == partner) return known.index;
+      link = &known.next;
+    }
+    *link = static_cast<int>(next_partner_.size());
+    const int index = make();
+    next_partner_.push_back({partner, index, -1});
+    return index;
+  };
   for (int j = 0; j < n_; ++j) {
     for (int k = hessian_.begin[at(j)]; k < hessian_.begin[at(j) + 1]; ++k) {
       const int i = hessian_.inner[at(k)];
@@ -165,12 +202,12 @@ void KktSystem::list_entries(const Problem& problem) {
         const int first = swap ? bj : bi, second = swap ? bi : bj;
         const LocalBlock& b1 = local_.blocks()[at(first)];
         const LocalBlock& b2 = local_.blocks()[at(second)];
-        auto [found, fresh] = pair_of.try_emplace({first, second}, static_cast<int>(pairs_.size()));
-        if (fresh) {
+        const int index = find(first, -1 - second, [&] {
           pairs_.push_back({first, second, static_cast<int>(pair_entry_.size()), 0});
           pair_entry_.resize(pair_entry_.size() + at(b1.locals * b2.locals), -1);
-        }
-        const int base = pairs_[at(found->second)].first_entry;
+          return static_cast<int>(pairs_.size()) - 1;
+        });
+        const int base = pairs_[at(index)].first_entry;
         const int li = local_.place_in_block(i), lj = local_.place_in_block(j);
         const int row = swap ? lj : li, column = swap ? li : lj;
         pair_entry_[at(base + row * b2.locals + column)] = k;
@@ -178,12 +215,12 @@ void KktSystem::list_entries(const Problem& problem) {
       } else {
         const int block = std::max(bi, bj);
         const int local = bi >= 0 ? i : j, other = bi >= 0 ? j : i;
-        auto [found, fresh] = mixed_of.try_emplace({block, other}, static_cast<int>(mixed_.size()));
-        if (fresh) {
+        const int index = find(block, other, [&] {
           mixed_.push_back({block, other, static_cast<int>(mixed_entry_.size()), 0});
           mixed_entry_.resize(mixed_entry_.size() + at(local_.blocks()[at(block)].locals), -1);
-        }
-        mixed_entry_[at(mixed_[at(found->second)].first_entry + local_.place_in_block(local))] = k;
+          return static_cast<int>(mixed_.size()) - 1;
+        });
+        mixed_entry_[at(mixed_[at(index)].first_entry + local_.place_in_block(local))] = k;
       }
     }
   }
@@ -298,13 +335,19 @@ void KktSystem::add_outer(const int* slot, const double* value, int count, doubl
   double* stored = matrix_.values().data();
   for (int a = 0; a < count; ++a) {
     const double scaled = factor * value[a];
-    for (int b = 0; b <= a; ++b) {
-      const int where = target(slot[a], slot[b]);
-      if (where >= 0) {
-        stored[where] += scaled * value[b];
-      } else {
-        border_values_[at(-1 - where)] += scaled * value[b];
+    const int own = slot[a];
+    if (own < 0) {
+      for (int b = 0; b < count; ++b) {
+        if (slot[b] >= 0 || b <= a) border_values_[at(-1 - target(own, slot[b]))] += scaled * value[b];
       }
+      continue;
+    }
+    const int column = matrix_.begin(own) - own;
+    for (int b = 0; b <= a; ++b) {
+      const int other = slot[b];
+      if (other < 0) continue;
+      const int where = other >= own ? column + other : matrix_.begin(other) + own - other;
+      stored[where] += scaled * value[b];
     }
   }
 }

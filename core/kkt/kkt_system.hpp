@@ -72,14 +72,18 @@ class KktSystem {
     int i, j, entry;
   };
 
+  struct Partner {  // of a place, in a linked list
+    int partner, index, next;
+  };
+
   int target(int slot, int other) const noexcept;
   double& cell(int target) noexcept {
     return target >= 0 ? matrix_.values()[static_cast<std::size_t>(target)]
                        : border_values_[static_cast<std::size_t>(-1 - target)];
   }
   void number_slots(const Problem& problem);
-  void shape_matrix(const Problem& problem);
-  void list_entries(const Problem& problem);
+  void shape_matrix();
+  void list_entries();
   void assemble(const Values& values);
   void add_hessian(Span<const double> w);
   void add_row(const double* slot_value, double factor);
@@ -108,6 +112,8 @@ class KktSystem {
   std::vector<Entry> mixed_entries_;
   std::vector<Pair> pairs_;
   std::vector<Mixed> mixed_;
+  std::vector<int> partner_of_block_;
+  std::vector<Partner> next_partner_;
   std::vector<int> pair_entry_, pair_target_, mixed_entry_, mixed_target_;
   double weight_ = 0.0;  // ρ
   double slack_ = 0.0;   // dual regularisation of exact rows

@@ -16,7 +16,20 @@ constexpr int most_retained = 24;
 
 }  // namespace
 
+bool LocalElimination::fits(const Problem& problem) const noexcept {
+  if (problem_ != &problem || block_of_row_.size() != at(problem.rows())) return false;
+  const SparsityPattern pattern = problem.jacobian_pattern();
+  std::size_t row = 0;
+  for (const LocalBlock& block : blocks_) {
+    for (int i = 0; i < block.rows; ++i, ++row) {
+      if (jacobian_begin_[row] != pattern.begin[at(block.first_row + i)]) return false;
+    }
+  }
+  return true;
+}
+
 void LocalElimination::analyse(const Problem& problem, Span<const double> jacobian) {
+  problem_ = &problem;
   blocks_.clear();
   local_.clear();
   retained_.clear();
@@ -40,6 +53,7 @@ void LocalElimination::analyse(const Problem& problem, Span<const double> jacobi
   r_.assign(at(r), 0.0);
   a_.assign(at(a), 0.0);
   b_.assign(at(b), 0.0);
+  update(jacobian);
 }
 
 bool LocalElimination::choose(const Problem& problem, const LocalRows& rows, Span<const double> jacobian) {

@@ -26,6 +26,8 @@ class LocalElimination {
   /// Chooses each place's local unknowns at these values: those of the problem's that its rows feel (not the turn about
   /// an edge's own axis). Allocates.
   void analyse(const Problem& problem, Span<const double> jacobian);
+  /// Whether the choice was made for this problem and its places are as they were.
+  bool fits(const Problem& problem) const noexcept;
   /// False: a chosen unknown no longer moves its rows, and another choice is due.
   bool update(Span<const double> jacobian) noexcept;
 
@@ -47,6 +49,7 @@ class LocalElimination {
  private:
   bool choose(const Problem& problem, const LocalRows& rows, Span<const double> jacobian);
 
+  const Problem* problem_ = nullptr;
   std::vector<LocalBlock> blocks_;
   std::vector<int> local_, retained_;
   std::vector<int> entry_;  // per Jacobian entry of a block's rows: ≥ 0 place among retained, −1 − k: local k

@@ -26,8 +26,10 @@ class ProfileMatrix {
   int size() const noexcept { return static_cast<int>(last_.size()); }
   /// Numbers that are stored.
   std::size_t stored() const noexcept { return values_.size(); }
+  int begin(int column) const noexcept { return begin_[static_cast<std::size_t>(column)]; }
   int last(int column) const noexcept { return last_[static_cast<std::size_t>(column)]; }
 
+  /// Index of a column's diagonal entry; the column's others follow.
   /// Index of entry (row ≥ column) in `values`, −1 where it is not stored.
   int index(int row, int column) const noexcept {
     return row <= last(column) ? begin_[static_cast<std::size_t>(column)] + row - column : -1;

@@ -37,7 +37,7 @@ Json rows(const std::vector<double>& values, int per_row) {
   return out;
 }
 
-Json provenance(const Session& session, const Registry& registry) {
+Json plugins_of(const Session& session, const Registry& registry) {
   std::set<std::pair<int, std::string>> named;
   for (const ComponentChoice* choice : components_of(session.composition)) {
     named.emplace(static_cast<int>(choice->kind), choice->name);
@@ -51,27 +51,16 @@ Json provenance(const Session& session, const Registry& registry) {
                        {"sha256", origin.sha256},
                        {"abi_tag", origin.abi_tag}});
   }
-  return {{"version", bowstring_version}, {"interface_version", interface_version}, {"plugins", plugins}};
+  return plugins;
 }
 
-const char* manifold_name(Manifold manifold) {
-  switch (manifold) {
-    case Manifold::real:
-      return "R";
-    case Manifold::vector:
-      return "R^n";
-    case Manifold::circle:
-      return "S1";
-    case Manifold::direction:
-      return "S2";
-    case Manifold::rotation:
-      break;
-  }
-  return "SO3";
+Json start_of(const StartOrigin& start) {
+  const auto known = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+  return {{"file", known(start.file)}, {"sha256", known(start.sha256)}};
 }
 
-Json problem(const Session& session) {
-  const ProblemSummary& summary = session.assembly->summary();
+Json problem(const SessionRecord& session) {
+  const ProblemSummary& summary = session.problem;
   Json fields = Json::array();
   for (const auto& curve : session.scene->curves) {
     for (const FieldDeclaration& field : curve->declaration.fields) {
@@ -92,7 +81,7 @@ Json problem(const Session& session) {
           {"fields", fields}};
 }
 
-Json solver(const Session& session, const Solution& solution) {
+Json solver(const SessionRecord& session, const Solution& solution) {
   const SolverResult& result = solution.solver;
   Json history = Json::array();
   for (const IterationRecord& record : result.history) {
@@ -104,12 +93,12 @@ Json solver(const Session& session, const Solution& solution) {
   }
   const Seconds& seconds = session.seconds;
   return {
-      {"name", session.composition.solver.name},
+      {"name", session.solver},
       {"claim", result.reason},
       {"iterations", result.iterations},
       {"factorizations", result.factorizations > 0 ? Json(result.factorizations) : Json(nullptr)},
       {"evaluations", result.evaluations},
-      {"epochs", session.assembly->epochs()},
+      {"epochs", session.epochs},
       {"history", history},
       {"seconds",
        {{"load", seconds.load},
@@ -203,28 +192,15 @@ Json supports(const Scene& scene, const Readings& readings) {
   return out;
 }
 
-Json state(const Session& session, const Solution& solution) {
-  Json fields = Json::object();
-  for (const auto& curve : session.scene->curves) {
-    const double* q = solution.q.data() + curve->coordinate_begin;
-    for (const FieldDeclaration& field : curve->declaration.fields) {
-      const int count = field.count * coordinate_count(field.manifold, field.dimension);
-      fields[curve->name + "." + field.name] = vector(q, count);
-      q += count;
-    }
-  }
-  Json multipliers = Json::object();
-  for (const RowOrigin& group : session.assembly->row_origins()) {
-    multipliers[group.name] = vector(solution.multipliers.data() + group.first, group.count);
-  }
+Json state(const SessionRecord& session, const Solution& solution) {
+  const RecordedState recorded = record_state(*session.scene, session.rows, solution.q, solution.multipliers);
+  Json fields = Json::object(), multipliers = Json::object();
+  for (const NamedNumbers& field : recorded.fields) fields[field.name] = numbers(field.values);
+  for (const NamedNumbers& group : recorded.multipliers) multipliers[group.name] = numbers(group.values);
   return {{"fields", fields}, {"multipliers", multipliers}};
 }
 
-}  // namespace
-
-std::string result_document(const Session& session, const Solution& solution, const Readings& readings,
-                            const Registry& registry) {
-  const Scene& scene = *session.scene;
+Json energies(const Scene& scene, const Readings& readings) {
   Json energy = Json::object();
   double total = 0.0;
   for (std::size_t e = 0; e < readings.term_energy.size(); ++e) {
@@ -233,27 +209,72 @@ std::string result_document(const Session& session, const Solution& solution, co
   }
   const bool known = readings.term_energy.size() == scene.energies.size();
   energy["total"] = known ? finite(total) : Json(nullptr);
+  return energy;
+}
+
+std::string written(const Json& document, int indent) {
+  return document.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string provenance_json(const Session& session, const Registry& registry) {
+  return written({{"version", bowstring_version},
+                  {"interface_version", interface_version},
+                  {"plugins", plugins_of(session, registry)}},
+                 -1);
+}
+
+SessionRecord record_of(const Session& session, std::string provenance) {
+  return {session.scene,
+          session.composition.resolved_json,
+          std::move(provenance),
+          session.composition.solver.name,
+          session.assembly->summary(),
+          session.assembly->row_origins(),
+          session.assembly->epochs(),
+          session.seconds};
+}
+
+std::string result_document(const SessionRecord& session, const Solution& solution, const Readings& readings) {
+  const Scene& scene = *session.scene;
   Json curves = Json::array();
   for (const CurveRecord& record : readings.curves) curves.push_back(curve(*scene.curves[at(record.curve)], record));
 
   Json document;
-  document["format"] = "bowstring.result/1";
+  document["format"] = result_format;
   document["status"] = verdict_name(solution.certificate.verdict);
   document["reason"] = solution.certificate.reason;
   document["warnings"] = solution.warnings;
-  document["composition"] = Json::parse(session.composition.resolved_json);
-  document["provenance"] = provenance(session, registry);
+  document["composition"] = Json::parse(session.composition);
+  document["provenance"] = Json::parse(session.provenance);
+  if (solution.start) document["provenance"]["start"] = start_of(*solution.start);
   document["problem"] = problem(session);
   document["solver"] = solver(session, solution);
   document["certificate"] = certificate(solution.certificate);
-  document["energy"] = std::move(energy);
+  document["energy"] = energies(scene, readings);
   document["quantities"] = quantities(readings.quantities);
   document["curves"] = std::move(curves);
   document["contacts"] = contacts(scene, readings);
   document["supports"] = supports(scene, readings);
   document["state"] = state(session, solution);
   document["equilibria"] = Json::array();
-  return document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return written(document, 1) + "\n";
+}
+
+std::string result_scalars(const SessionRecord& session, const Solution& solution, const Readings& readings) {
+  Json document;
+  document["status"] = verdict_name(solution.certificate.verdict);
+  document["reason"] = solution.certificate.reason;
+  document["certificate"] = certificate(solution.certificate);
+  document["energy"] = energies(*session.scene, readings);
+  document["quantities"] = quantities(readings.quantities);
+  return written(document, -1);
+}
+
+std::string result_document(const Session& session, const Solution& solution, const Readings& readings,
+                            const Registry& registry) {
+  return result_document(record_of(session, provenance_json(session, registry)), solution, readings);
 }
 
 }  // namespace bowstring

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <limits>
+#include <stdexcept>
 
 #include "core/certificate/multipliers.hpp"
 #include "core/model/declarations.hpp"
@@ -88,11 +89,32 @@ std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& re
   refusal.plugin_failure = std::move(built.plugin_failure);
   if (refusal.any()) return nullptr;
   session->scene = std::move(built.scene);
+  const StartTable& table = composition.start;
+  Start& start = session->start;
+  if (table.state != nullptr) {
+    std::vector<DocumentFlaw> flaws;
+    start.q = recorded_coordinates(*session->scene, *table.state, table.name, flaws, start.warnings);
+    for (DocumentFlaw& flaw : flaws) {
+      refusal.errors.push_back({table.position, std::move(flaw.found), std::move(flaw.expected), std::move(flaw.mend)});
+    }
+    if (refusal.any()) return nullptr;
+  }
   try {
-    session->assembly = std::make_unique<Assembly>(*session->scene);
+    session->assembly = std::make_unique<Assembly>(*session->scene, start.q);
   } catch (const std::exception& error) {
-    refusal.plugin_failure = Status::failure(Code::failed, error.what());
+    if (start.q.empty()) {
+      refusal.plugin_failure = Status::failure(Code::failed, error.what());
+    } else {
+      refusal.errors.push_back({table.position,
+                                "this scene cannot begin at the state of " + table.name + ": " + error.what(),
+                                "a state of this scene", "remove [start]"});
+    }
     return nullptr;
+  }
+  if (table.state != nullptr) {
+    start.origin = {table.from, table.state->sha256};
+    start.multipliers =
+        recorded_multipliers(session->assembly->row_origins(), *table.state, table.name, start.warnings);
   }
   check_pair(*session, refusal);
   session->seconds.setup = since(setup);
@@ -100,16 +122,61 @@ std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& re
   return refusal.any() ? nullptr : std::move(session);
 }
 
-Solution solve(Session& session, const std::function<bool(const IterationRecord&)>& progress) {
+namespace {
+
+/// A new constraint in the place of one that rows have been bound by.
+void renew(ConstraintUse& use, const ComponentChoice& choice) {
+  Status status;
+  use.constraint = create<Constraint>(choice, status);
+  use.rows = {};
+  if (status.ok()) status = use.constraint->declare(use.scene, use.rows);
+  if (!status.ok()) throw std::runtime_error("constraint '" + use.label + "': " + status.text);
+  if (const std::string flaw = flaw_of(use.rows); !flaw.empty()) {
+    throw std::runtime_error("constraint '" + use.label + "' " + flaw);
+  }
+}
+
+/// New constraints and a new assembly, as if nothing had been solved before. Where that fails the old ones stay: they
+/// fit each other.
+void bind_anew(Session& session, const std::vector<double>& q) {
+  Scene& scene = *session.scene;
+  std::vector<std::pair<Owned<Constraint>, RowDeclaration>> before;
+  std::size_t next = 0;
+  try {
+    for (ConstraintUse& use : scene.constraints) {
+      before.emplace_back(Owned<Constraint>{nullptr, nullptr}, use.rows);
+      if (use.plugin.empty()) continue;  // rows of ends, which remember nothing
+      before.back().first = std::move(use.constraint);
+      renew(use, session.composition.constraints[next++].component);
+    }
+    session.assembly = std::make_unique<Assembly>(scene, q, session.assembly.get());
+  } catch (...) {
+    for (std::size_t c = 0; c < before.size(); ++c) {
+      if (before[c].first != nullptr) scene.constraints[c].constraint = std::move(before[c].first);
+      scene.constraints[c].rows = std::move(before[c].second);
+    }
+    throw;
+  }
+}
+
+/// Whether the solver was stopped from outside, or by what the user allows it.
+bool was_stopped(const Session& session, const Solution& solution, bool by_user, double seconds) {
+  const ParameterSet& parameters = session.composition.solver.parameters;
+  const ParameterValue* iterations = parameters.find("max-iterations");
+  const ParameterValue* limit = parameters.find("time-limit");
+  return by_user || (iterations != nullptr && solution.solver.iterations >= iterations->integer) ||
+         (limit != nullptr && seconds >= limit->number);
+}
+
+Solution solve_from(Session& session, const std::vector<double>& q, Span<const double> multipliers,
+                    const std::function<bool(const IterationRecord&)>& progress) {
   const auto begin = Clock::now();
   Solution solution;
-  solution.warnings = session.composition.warnings;
-  solution.warnings.insert(solution.warnings.end(), session.scene->warnings.begin(), session.scene->warnings.end());
   Assembly& assembly = *session.assembly;
-  const std::vector<double> start = session.scene->start_coordinates();
   SolverContext context;
   context.on_iteration = progress;
-  Status status = session.enforcement->solve(assembly, *session.solver, start, context, solution.solver);
+  context.multipliers = multipliers;
+  Status status = session.enforcement->solve(assembly, *session.solver, q, context, solution.solver);
   if (const std::string flaw = flaw_of(solution.solver, assembly); status.ok() && !flaw.empty()) {
     status = Status::failure(Code::failed, "it " + flaw);
     solution.solver.q.clear();
@@ -119,9 +186,9 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
     solution.solver.claim = Claim::failed;
     solution.solver.reason = "solver '" + session.composition.solver.name + "': " + status.text;
   }
-  session.seconds.solve = since(begin);
+  session.seconds.solve += since(begin);
 
-  solution.q = solution.solver.q.empty() ? start : solution.solver.q;
+  solution.q = solution.solver.q.empty() ? q : solution.solver.q;
   solution.multipliers = solution.solver.multipliers;
   solution.estimated_multipliers = solution.multipliers.size() != static_cast<std::size_t>(assembly.rows());
   status = assembly.accept(solution.q);
@@ -146,6 +213,61 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
                   tolerance->number, certificate.stationarity, certificate.rounding_floor);
     solution.warnings.emplace_back(text);
   }
+  return solution;
+}
+
+/// A solution of a scene that could not be made ready for it.
+Solution unsolved(const Session& session, const std::vector<double>& q, const std::string& why) {
+  Solution out;
+  out.q = q;
+  out.multipliers.assign(static_cast<std::size_t>(session.assembly->rows()), 0.0);
+  out.solver.reason = why;
+  out.certificate = unknown_certificate();
+  out.certificate.reason = why;
+  return out;
+}
+
+}  // namespace
+
+Solution solve(Session& session, const std::function<bool(const IterationRecord&)>& progress, const Start* start) {
+  const auto begin = Clock::now();
+  session.seconds.solve = 0.0;
+  const Start& from = start != nullptr ? *start : session.start;
+  bool by_user = false;
+  const auto watched = [&](const IterationRecord& record) {
+    by_user = by_user || (progress && !progress(record));
+    return !by_user;
+  };
+  const std::vector<double> own = session.scene->start_coordinates();
+  const std::vector<double>& first = from.q.empty() ? own : from.q;
+  Solution solution;
+  try {
+    if (start != nullptr || !session.bound) bind_anew(session, from.q);
+    session.bound = false;
+    solution = solve_from(session, first, from.multipliers, watched);
+    const Certificate& found = solution.certificate;
+    if (!from.q.empty() && found.verdict != Verdict::converged &&
+        !was_stopped(session, solution, by_user, session.seconds.solve)) {
+      const std::string first_verdict = verdict_name(found.verdict), first_reason = found.reason;
+      bind_anew(session, {});
+      Solution second = solve_from(session, own, {}, watched);
+      second.warnings.push_back("from the given start the solve ended '" + first_verdict + "' (" + first_reason +
+                                "); this is what it came to from the scene's own start");
+      solution = std::move(second);
+    }
+  } catch (const std::exception& error) {
+    bind_anew(session, {});
+    solution = unsolved(session, first, error.what());
+  }
+  if (!from.q.empty()) solution.start = from.origin;
+  std::vector<std::string> warnings = session.composition.warnings;
+  const auto add = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  add(session.scene->warnings);
+  add(from.warnings);
+  add(solution.warnings);
+  solution.warnings = std::move(warnings);
   session.seconds.total += since(begin);
   return solution;
 }

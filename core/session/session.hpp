@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "core/composition/composition.hpp"
 #include "core/interfaces/enforcement.hpp"
 #include "core/session/refusal.hpp"
+#include "core/session/start.hpp"
 
 namespace bowstring {
 
@@ -23,10 +25,12 @@ struct Seconds {
 /// A composition made ready to be solved.
 struct Session {
   Composition composition;
-  std::unique_ptr<Scene> scene;
+  std::shared_ptr<Scene> scene;  ///< its curves and the labels of its energies stay as they are from solve to solve
   Owned<Solver> solver{nullptr, nullptr};
   Owned<Enforcement> enforcement{nullptr, nullptr};
   std::unique_ptr<Assembly> assembly;
+  Start start;        ///< of [start]; its q is empty where the composition starts by itself
+  bool bound = true;  ///< rows are bound at `start`, as nothing was solved yet
   Seconds seconds;
 };
 
@@ -36,6 +40,7 @@ struct Solution {
   SolverResult solver;
   Certificate certificate;
   bool estimated_multipliers = false;  ///< the solver gave none
+  std::optional<StartOrigin> start;    ///< empty: the composition's own
   std::vector<std::string> warnings;
 };
 
@@ -44,6 +49,12 @@ std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& re
 
 /// Solves and certifies. `progress` is called after each iteration; false stops with the best point. A failure of a
 /// plugin during the solution is a verdict of the solution, not an error.
-Solution solve(Session& session, const std::function<bool(const IterationRecord&)>& progress);
+///
+/// `start`: where the solver begins, instead of at the session's own start. A session may be solved any number of
+/// times; each solve gives the bits that it would give in a session of its own. Where the solver, of itself, does not
+/// reach an equilibrium from a start, it is asked once more, without multipliers and from the scene's own start: a
+/// start never makes a status worse.
+Solution solve(Session& session, const std::function<bool(const IterationRecord&)>& progress,
+               const Start* start = nullptr);
 
 }  // namespace bowstring

@@ -16,6 +16,8 @@ namespace bowstring {
 /// It must not solve anything itself.
 using Progress = std::function<bool(const IterationRecord&)>;
 
+class PreparedSimulation;
+
 /// A composition and what is changed of it: the way to compute in process what `bowstring solve FILE --set path=value`
 /// computes, with the same bits. A plain value: copy it for a variant.
 ///
@@ -64,12 +66,22 @@ class Simulation {
   /// (`!any()`) where `solve` would start.
   Refusal check(Registry& plugins) const;
 
-  /// Solves from the composition's own start, and certifies what the solver found. The result is refused where
+  /// Solves from where the composition starts, and certifies what the solver found. The result is refused where
   /// `check` refuses; whatever happens later is a status of the result. An exception of `progress` stops the solver,
   /// and is told in the result's warnings.
   SimulationResult solve(Registry& plugins, const Progress& progress = {}) const;
 
+  /// The same from the state of a result, of this scene and mesh with whatever other values, as `[start]` from its
+  /// document. Refused where the state does not fit: docs/in-process.md.
+  SimulationResult solve(Registry& plugins, const Progress& progress, const SimulationResult& from) const;
+
+  /// Reads and builds everything once, to be solved again and again with other values
+  /// (core/simulation/prepared_simulation.hpp). The registry outlives what is prepared.
+  PreparedSimulation prepared(Registry& plugins) const;
+
  private:
+  SimulationResult solve_request(Registry& plugins, const Progress& progress, const SimulationResult* from) const;
+
   CompositionRequest request_;
 };
 

@@ -15,13 +15,22 @@ using Json = nlohmann::ordered_json;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
+/// What a path is followed in: the small tables alone where it leads there.
+const Json& root_of(const SimulationData& data, const std::string& path) {
+  const std::string first = path.substr(0, path.find('.'));
+  for (const char* table : {"quantities", "certificate", "energy"}) {
+    if (first == table && path.size() > first.size()) return data.scalars();
+  }
+  return data.document();
+}
+
 /// The one value that a path leads to; null with `error` set where there is none.
 const Json* one_value(const SimulationData& data, const std::string& path, std::string& error) {
   Selection selection;
   if (data.refusal.any()) {
     error = "there is no result: " + data.refusal.text();
   } else {
-    error = follow_path(data.document, path, selection);
+    error = follow_path(root_of(data, path), path, selection);
   }
   if (!error.empty()) return nullptr;
   if (!selection.of_every_entry) return selection.values.front();
@@ -59,10 +68,31 @@ bool add_row(const Json& value, NumberTable& table) {
 
 }  // namespace
 
+const std::string& SimulationData::text() const {
+  std::call_once(text_once_, [&] {
+    if (solved()) text_ = result_document(session, solution, readings);
+  });
+  return text_;
+}
+
+const nlohmann::ordered_json& SimulationData::document() const {
+  std::call_once(document_once_, [&] {
+    if (solved()) document_ = Json::parse(text());
+  });
+  return document_;
+}
+
+const nlohmann::ordered_json& SimulationData::scalars() const {
+  std::call_once(scalars_once_, [&] {
+    if (solved()) scalars_ = Json::parse(result_scalars(session, solution, readings));
+  });
+  return scalars_;
+}
+
 SimulationResult::SimulationResult() {
-  SimulationData data;
-  data.refusal.plugin_failure = Status::failure(Code::failed, "nothing was solved yet");
-  data_ = std::make_shared<const SimulationData>(std::move(data));
+  const auto data = std::make_shared<SimulationData>();
+  data->refusal.plugin_failure = Status::failure(Code::failed, "nothing was solved yet");
+  data_ = data;
 }
 
 SimulationResult::SimulationResult(std::shared_ptr<const SimulationData> data) noexcept : data_(std::move(data)) {}
@@ -72,7 +102,8 @@ const Refusal& SimulationResult::refusal() const noexcept { return data_->refusa
 Verdict SimulationResult::status() const noexcept { return data_->status; }
 const std::string& SimulationResult::reason() const noexcept { return data_->reason; }
 const std::vector<std::string>& SimulationResult::warnings() const noexcept { return data_->warnings; }
-const std::string& SimulationResult::json() const noexcept { return data_->text; }
+const std::string& SimulationResult::json() const { return data_->text(); }
+const SimulationData& SimulationResult::data() const noexcept { return *data_; }
 
 Found<double> SimulationResult::number(const std::string& path) const {
   Found<double> out{unknown, ""};
@@ -93,7 +124,7 @@ Found<NumberTable> SimulationResult::numbers(const std::string& path) const {
     one_value(*data_, path, out.error);
     return out;
   }
-  out.error = follow_path(data_->document, path, selection);
+  out.error = follow_path(root_of(*data_, path), path, selection);
   if (!out.ok()) return out;
   if (!selection.of_every_entry && selection.values.front()->is_array()) {
     const Json& list = *selection.values.front();
@@ -152,7 +183,7 @@ Status SimulationResult::write(const std::string& file) const {
   for (const std::string& input : data_->input_files) {
     if (same_file(target, input)) return refuse("it is what the composition reads; expected another file");
   }
-  return write_file(target, data_->text);
+  return write_file(target, data_->text());
 }
 
 }  // namespace bowstring

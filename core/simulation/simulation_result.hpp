@@ -31,7 +31,7 @@ struct NumberTable {
   }
 };
 
-struct SimulationData;
+class SimulationData;
 
 /// What came of a solve: a result document (`bowstring.result/1`, docs/results.md), or a refusal. Cheap to copy; never
 /// changes, so that any number of threads may read it.
@@ -67,11 +67,15 @@ class SimulationResult {
   /// The keys of a table, or of a list's entries their names, types or numbers, in the document's order.
   Found<std::vector<std::string>> names(const std::string& path) const;
 
-  /// The whole document, as `bowstring solve --json` prints it; "" where refused.
-  const std::string& json() const noexcept;
+  /// The whole document, as `bowstring solve --json` prints it; "" where refused. It is made when it is first asked
+  /// for: by this, by `write`, or by a path that leads elsewhere than into `quantities`, `certificate` and `energy`.
+  const std::string& json() const;
   /// Writes the document to a file, whole or not at all. `invalid_input` where the file cannot be written, or is what
   /// the composition reads; then nothing has changed.
   Status write(const std::string& file) const;
+
+  /// The kernel's own, for what starts from it.
+  const SimulationData& data() const noexcept;
 
  private:
   std::shared_ptr<const SimulationData> data_;

@@ -9,7 +9,7 @@
 #include "core/composition/nearest.hpp"
 #include "plugins/host/elf.hpp"
 #include "plugins/host/library.hpp"
-#include "plugins/host/sha256.hpp"
+#include "core/composition/sha256.hpp"
 
 namespace bowstring {
 

@@ -16,8 +16,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_slack = 1e-2;  // mm, of a row at a cold start
 constexpr double bound_push = 1e-2;   // of its size (at least 1): how far inside its bound an unknown starts
 constexpr double rows_of_first_barrier = 100.0;
-constexpr double barrier_factor = 0.2, barrier_power = 1.5;
-constexpr double subproblem = 10.0;         // errors of a solved subproblem, in units of the barrier
+constexpr double barrier_factor = 0.05, barrier_power = 1.7;
+constexpr double subproblem = 30.0;         // errors of a solved subproblem, in units of the barrier
 constexpr double boundary = 0.99;           // share of the way to a bound that a step may go
 constexpr double multiplier_spread = 1e10;  // of z s against μ
 constexpr int refinements = 3;
@@ -357,7 +357,8 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
     for (;;) {
       const double mu = barrier_of_row();
       const Errors now = errors(mu);
-      if (std::max({now.stationarity, now.violation, now.complementarity}) > subproblem * mu) break;
+      if (std::max(now.stationarity, now.violation) > subproblem * barrier_) break;
+      if (now.complementarity > subproblem * mu) break;
       if (settings_.hand_over_barrier > 0.0 && barrier_ <= settings_.hand_over_barrier) {
         return finish({Claim::optimal, "handed over"});
       }

@@ -12,7 +12,7 @@
 namespace bowstring::newton {
 
 struct BarrierSettings {
-  double first_barrier = 1.0;   ///< N mm, μ of one row of a hundred
+  double first_barrier = 0.1;   ///< N mm, μ of one row of a hundred
   double last_barrier = 1e-11;  ///< N mm, of any row: the energy that the barrier costs at the end
   /// Where the method is followed by another one: it may stop at this barrier with its subproblem solved. 0: not.
   double hand_over_barrier = 0.0;

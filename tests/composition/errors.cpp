@@ -144,14 +144,45 @@ TEST_CASE("keys that a table must have") {
 
 TEST_CASE("what belongs to a later version is said to") {
   Workbench bench;
-  const std::string text = std::string(test::small_scene) + "[start]\n[[step]]\n[[loss]]\n";
+  const std::string text = std::string(test::small_scene) + "[[step]]\n[[loss]]\n";
   const std::string tables =
       "expected one of: schema, title, base, plugin-path, set, scene, vessel, wire, energy, "
-      "constraint, enforcement, solver, certificate; remove it";
+      "constraint, enforcement, solver, certificate, start; remove it";
   CHECK(bench.errors(text) ==
-        Texts{"scene.toml:28:2: key 'start' in the composition is not available in this version; " + tables,
-              "scene.toml:29:3: key 'step' in the composition is not available in this version; " + tables,
-              "scene.toml:30:3: key 'loss' in the composition is not available in this version; " + tables});
+        Texts{"scene.toml:28:3: key 'step' in the composition is not available in this version; " + tables,
+              "scene.toml:29:3: key 'loss' in the composition is not available in this version; " + tables});
+}
+
+TEST_CASE("a start names a result document that can be read") {
+  Workbench bench;
+  const auto errors = [&](const std::string& table) { return bench.errors(std::string(test::small_scene) + table); };
+  const std::string document = "a result document, as `bowstring solve --out` writes it; ";
+  CHECK(errors("[start]\n") ==
+        Texts{"scene.toml:28:1: [start] has no 'from'; expected a result document to start from; add from = "
+              "\"result.json\", or remove the table"});
+  CHECK(
+      errors("[start]\nfrom = 3\n") ==
+      Texts{"scene.toml:29:8: 'from' of [start] is whole number 3; expected text, the path of a result document; write "
+            "from = \"result.json\""});
+  CHECK(
+      errors("[start]\nfrom = \"none.json\"\nrest = \"previous\"\n") ==
+      Texts{
+          "scene.toml:29:8: cannot read the start 'none.json' (No such file or directory); expected " + document +
+              "paths are relative to the file that they stand in",
+          "scene.toml:30:1: key 'rest' in [start] is not available in this version; expected one of: from; remove it"});
+  CHECK(bench.errors(test::small_scene, {{"start.from", "none.json"}}) ==
+        Texts{"--set start.from=none.json: cannot read the start 'none.json' (No such file or directory); expected " +
+              document + "paths of --set are relative to the working directory"});
+  bench.write("results/a.json", R"({"format": "bowstring.result/1", "state": {"fields": {"v.position": [1, 2]},
+                                    "multipliers": {}}, "problem": {"fields": [{"name": "v.position", "manifold": "R"}]}})");
+  const Composition composition = bench.loaded(std::string(test::small_scene) + "[start]\nfrom = \"results/a.json\"\n");
+  CHECK(composition.start.from == (bench.folder() / "results/a.json").string());
+  REQUIRE(composition.start.state != nullptr);
+  REQUIRE(composition.start.state->fields.size() == 1);
+  CHECK(composition.start.state->fields[0].manifold == "R");
+  CHECK(composition.start.state->fields[0].values == std::vector<double>{1.0, 2.0});
+  CHECK(composition.input_files.back() == composition.start.from);
+  CHECK(composition.resolved_json.find("\"start\":{\"from\":\"" + composition.start.from) != std::string::npos);
 }
 
 TEST_CASE("a wire with a geometry of its own takes that geometry's nodes, and needs no vessel") {

@@ -8,7 +8,7 @@
 
 #include "core/interfaces/comparison.hpp"
 #include "plugins/host/library.hpp"
-#include "plugins/host/sha256.hpp"
+#include "core/composition/sha256.hpp"
 #include "plugins/host/elf.hpp"
 #include "tests/plugins/plugin_folders.hpp"
 

@@ -120,18 +120,19 @@ std::vector<Place> node_places(const ContactPlan& plan) {
   return out;
 }
 
-/// Where `contacts` says that segment rows act; one row on every segment that is not held, and one on the first node
-/// where both ends are free. Throws where a segment has none.
-std::vector<Place> segment_places(const ContactPlan& plan, const std::vector<ContactEntry>& entries, std::size_t first,
-                                  std::size_t count) {
+/// Rows at nodes that are not wholly held, each followed by that of its segment, which stands where `contacts` says.
+/// Throws where a segment has none.
+std::vector<Place> segment_places(const ContactPlan& plan, const std::vector<ContactEntry>& entries,
+                                  std::size_t first) {
   const Curve& wire = plan.wire->curve();
   std::vector<Place> out;
   std::size_t row = first;
-  if (!wire.wholly_held(0) && !wire.wholly_held(wire.edges()) && count > at(wire.edges())) {
-    out.push_back({0, entries.at(row++).coordinate});
-  }
-  for (int i = 0; i < wire.edges(); ++i) {
-    if (wire.wholly_held(i) && wire.wholly_held(i + 1)) continue;
+  for (int i = 0; i < wire.nodes; ++i) {
+    if (!wire.wholly_held(i)) {
+      out.push_back(i < wire.edges() ? Place{i, 0.0} : Place{i - 1, 1.0});
+      ++row;
+    }
+    if (i == wire.edges() || (wire.wholly_held(i) && wire.wholly_held(i + 1))) continue;
     out.push_back({i, entries.at(row++).coordinate - i});
   }
   for (const Place& place : out) {
@@ -311,8 +312,7 @@ void add_contact_rows(const Json& constraint, const Following& following, std::s
   const ContactPlan plan = contact_plan(constraint, work, count);
   const GapForm form = gap_form(constraint);
   const bool by_segment = plan.type == "segment-wise-contact";
-  const std::vector<Place> places =
-      by_segment ? segment_places(plan, work.result->contacts, entry, count) : node_places(plan);
+  const std::vector<Place> places = by_segment ? segment_places(plan, work.result->contacts, entry) : node_places(plan);
   const std::vector<double>& mu = multipliers(work, name, places.size());
   const Curve& vessel = plan.vessel->curve();
   const Wall wall(vessel.position, vessel.radius, constraint.value("centerline", "spline") == "spline", form,

@@ -1,4 +1,4 @@
-#include "plugins/host/sha256.hpp"
+#include "core/composition/sha256.hpp"
 
 #include <array>
 #include <bit>

@@ -1,0 +1,67 @@
+#include "core/composition/start.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/composition/keys.hpp"
+
+namespace bowstring {
+namespace {
+
+/// Why the file cannot be read; "" where it has been.
+std::string read_file(const std::string& file, std::string& text) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) return "it is a folder";
+  errno = 0;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return errno != 0 ? std::strerror(errno) : "it cannot be opened";
+  text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  return stream.bad() ? "reading it failed" : "";
+}
+
+}  // namespace
+
+StartTable read_start(const Node& root, Report& report) {
+  StartTable start;
+  const Entry* entry = root.find("start");
+  if (entry == nullptr) return start;
+  const Node& table = entry->value;
+  const std::string mend = "write [start] with from = \"result.json\"";
+  if (!check_is_table(table, "'start'", mend, report)) return start;
+  check_keys(table, "[start]", {"from"}, {"rest"}, "remove it", report);
+  const Entry* from = table.find("from");
+  if (from == nullptr) {
+    report.error(table.position, "[start] has no 'from'", "a result document to start from",
+                 "add from = \"result.json\", or remove the table");
+    return start;
+  }
+  const Node& value = from->value;
+  if (!value.is_text() || value.text.empty()) {
+    report.error(value.position, "'from' of [start] is " + description(value), "text, the path of a result document",
+                 "write from = \"result.json\"");
+    return start;
+  }
+  const std::filesystem::path written(value.text);
+  start.from =
+      value.position.source ? (value.position.source->directory / written).lexically_normal().string() : value.text;
+  start.position = value.position.text();
+  start.name = "the start '" + value.text + "'";
+  std::string text;
+  if (const std::string why = read_file(start.from, text); !why.empty()) {
+    const bool by_override = value.position.source != nullptr && value.position.line == 0;
+    report.error(value.position, "cannot read " + start.name + " (" + why + ")",
+                 "a result document, as `bowstring solve --out` writes it",
+                 by_override ? "paths of --set are relative to the working directory"
+                             : "paths are relative to the file that they stand in");
+    return start;
+  }
+  std::vector<DocumentFlaw> flaws;
+  start.state = std::make_shared<const RecordedState>(read_recorded_state(text, start.name, flaws));
+  for (const DocumentFlaw& flaw : flaws) report.error(value.position, flaw.found, flaw.expected, flaw.mend);
+  return start;
+}
+
+}  // namespace bowstring

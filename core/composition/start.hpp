@@ -1,0 +1,13 @@
+#pragma once
+
+#include "core/composition/components.hpp"
+#include "core/composition/composition.hpp"
+#include "core/composition/tree.hpp"
+
+namespace bowstring {
+
+/// [start]: empty where the file has none. Reads the document that it names; whether its state fits is known when the
+/// scene has been built.
+StartTable read_start(const Node& root, Report& report);
+
+}  // namespace bowstring

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "core/session/session.hpp"
+
+namespace bowstring {
+
+/// Gives one number of an energy or a constraint another value, where that changes numbers alone: no place that is
+/// read, no field, no row, no message. Then the session is what `prepare` would make of that override. Otherwise, and
+/// where the override is wrong, answers false and leaves the session as it was: the composition has to be read again.
+bool revalue(Session& session, const Override& change);
+
+}  // namespace bowstring

@@ -1,0 +1,141 @@
+#include "core/simulation/prepared_simulation.hpp"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/result/document.hpp"
+#include "core/session/revalue.hpp"
+#include "core/simulation/solving.hpp"
+
+namespace bowstring {
+
+class PreparedSimulation::Inside {
+ public:
+  Inside(CompositionRequest given, Registry& registry) : request(std::move(given)), plugins(registry) {}
+
+  void put(const std::string& path, const std::string& value) {
+    solving::put(request.overrides, path, value);
+    changed.push_back(path);
+  }
+
+  void take_back(const std::string& path) {
+    solving::take_back(request.overrides, path);
+    session.reset();
+  }
+
+  /// Brings the session up to date; false with the refusal.
+  bool update(Refusal& refusal) {
+    for (const std::string& path : changed) {
+      if (session != nullptr && !revalue(*session, current(path))) session.reset();
+    }
+    changed.clear();
+    if (session != nullptr) return true;
+    ++builds;
+    session = prepare(request, plugins, refusal);
+    if (session != nullptr) provenance = provenance_json(*session, plugins);
+    return session != nullptr;
+  }
+
+  SimulationResult solved(const Progress& progress, const Start* start) {
+    SimulationResult result = solving::solve_session(*session, provenance, progress, start);
+    if (result.status() == Verdict::converged || result.status() == Verdict::stalled) last = result;
+    return result;
+  }
+
+  SimulationResult solve(const Progress& progress) {
+    Refusal refusal;
+    if (!update(refusal)) return solving::refused(std::move(refusal));
+    if (!last) return solved(progress, nullptr);
+    Start start;
+    if (solving::start_from(*session, *last, start, refusal)) return solved(progress, &start);
+    Start own = session->start;
+    own.warnings.push_back(
+        "the result before does not fit this scene any more, which starts where its composition does: " +
+        refusal.text());
+    return solved(progress, &own);
+  }
+
+  SimulationResult solve_from(const SimulationResult& from, const Progress& progress) {
+    Refusal refusal;
+    Start start;
+    if (!update(refusal) || !solving::start_from(*session, from, start, refusal)) {
+      return solving::refused(std::move(refusal));
+    }
+    return solved(progress, &start);
+  }
+
+  SimulationResult solve_afresh(const Progress& progress) {
+    Refusal refusal;
+    if (!update(refusal)) return solving::refused(std::move(refusal));
+    return solved(progress, nullptr);
+  }
+
+  CompositionRequest request;
+  Registry& plugins;
+  std::unique_ptr<Session> session;
+  std::string provenance;
+  std::vector<std::string> changed;  // paths since the session was brought up to date
+  std::optional<SimulationResult> last;
+  int builds = 0;
+
+ private:
+  Override current(const std::string& path) const {
+    for (const Override& one : request.overrides) {
+      if (one.path == path) return one;
+    }
+    return {path, ""};
+  }
+};
+
+namespace {
+
+template <class Solve>
+SimulationResult without_exceptions(const Solve& solve) {
+  try {
+    return solve();
+  } catch (...) {
+    return solving::refused(solving::broken_down());
+  }
+}
+
+}  // namespace
+
+PreparedSimulation::PreparedSimulation(const CompositionRequest& request, Registry& plugins)
+    : inside_(std::make_unique<Inside>(request, plugins)) {}
+PreparedSimulation::~PreparedSimulation() = default;
+PreparedSimulation::PreparedSimulation(PreparedSimulation&&) noexcept = default;
+PreparedSimulation& PreparedSimulation::operator=(PreparedSimulation&&) noexcept = default;
+
+void PreparedSimulation::set(const std::string& path, const std::string& value) { inside_->put(path, value); }
+void PreparedSimulation::set(const std::string& path, double value) { set(path, solving::number_text(value)); }
+void PreparedSimulation::set(const std::string& path, double value, const std::string& unit) {
+  set(path, solving::quantity_text(value, unit));
+}
+void PreparedSimulation::unset(const std::string& path) { inside_->take_back(path); }
+
+Refusal PreparedSimulation::check() {
+  Refusal refusal;
+  try {
+    inside_->update(refusal);
+  } catch (...) {
+    refusal = solving::broken_down();
+  }
+  return refusal;
+}
+
+SimulationResult PreparedSimulation::solve(const Progress& progress) {
+  return without_exceptions([&] { return inside_->solve(progress); });
+}
+
+SimulationResult PreparedSimulation::solve_from(const SimulationResult& from, const Progress& progress) {
+  return without_exceptions([&] { return inside_->solve_from(from, progress); });
+}
+
+SimulationResult PreparedSimulation::solve_afresh(const Progress& progress) {
+  return without_exceptions([&] { return inside_->solve_afresh(progress); });
+}
+
+int PreparedSimulation::builds() const noexcept { return inside_->builds; }
+
+}  // namespace bowstring

@@ -1,0 +1,118 @@
+#include "core/simulation/solving.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "core/simulation/simulation_data.hpp"
+
+namespace bowstring::solving {
+
+namespace {
+
+/// What an exception says, within a handler.
+std::string exception_text() {
+  try {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  } catch (...) {
+    return "an exception that is no std::exception was thrown";
+  }
+}
+
+/// Keeps the exceptions of a caller's function out of the solver.
+class GuardedProgress {
+ public:
+  explicit GuardedProgress(const Progress& progress) : progress_(progress) {}
+
+  bool operator()(const IterationRecord& record) {
+    if (!problem_.empty()) return false;
+    if (!progress_) return true;
+    try {
+      return progress_(record);
+    } catch (...) {
+      problem_ = "the progress function threw '" + exception_text() + "', which has stopped the solver";
+      return false;
+    }
+  }
+  const std::string& problem() const noexcept { return problem_; }
+
+ private:
+  const Progress& progress_;
+  std::string problem_;
+};
+
+}  // namespace
+
+SimulationResult refused(Refusal refusal) {
+  auto data = std::make_shared<SimulationData>();
+  data->refusal = std::move(refusal);
+  return SimulationResult(std::move(data));
+}
+
+Refusal broken_down() {
+  Refusal refusal;
+  refusal.plugin_failure = Status::failure(Code::failed, exception_text());
+  return refusal;
+}
+
+std::string number_text(double value) {
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, error == std::errc() ? end : text};
+}
+
+std::string quantity_text(double value, const std::string& unit) {
+  return "\"" + number_text(value) + " " + unit + "\"";
+}
+
+void take_back(std::vector<Override>& overrides, const std::string& path) {
+  const auto same = [&](const Override& one) { return one.path == path; };
+  overrides.erase(std::remove_if(overrides.begin(), overrides.end(), same), overrides.end());
+}
+
+void put(std::vector<Override>& overrides, const std::string& path, const std::string& value) {
+  take_back(overrides, path);
+  overrides.push_back({path, value});
+}
+
+bool start_from(const Session& session, const SimulationResult& from, Start& start, Refusal& refusal) {
+  const SimulationData& data = from.data();
+  if (!from.ok()) {
+    refusal.errors.push_back({"from", "the result to start from is a refusal (" + data.refusal.text() + ")",
+                              "a result that was solved", ""});
+    return false;
+  }
+  const RecordedState state =
+      record_state(*data.session.scene, data.session.rows, data.solution.q, data.solution.multipliers);
+  std::vector<DocumentFlaw> flaws;
+  const std::string name = "the result";
+  start.q = recorded_coordinates(*session.scene, state, name, flaws, start.warnings);
+  for (DocumentFlaw& flaw : flaws) {
+    refusal.errors.push_back({"from", std::move(flaw.found), std::move(flaw.expected), std::move(flaw.mend)});
+  }
+  if (refusal.any()) return false;
+  start.multipliers = recorded_multipliers(session.assembly->row_origins(), state, name, start.warnings);
+  return true;
+}
+
+SimulationResult solve_session(Session& session, std::string provenance, const Progress& progress, const Start* start) {
+  GuardedProgress guarded(progress);
+  auto data = std::make_shared<SimulationData>();
+  data->solution = solve(session, std::ref(guarded), start);
+  const Status readable = read_solution(session, data->solution, data->readings);
+  data->session = record_of(session, std::move(provenance));
+  data->status = data->solution.certificate.verdict;
+  data->reason = data->solution.certificate.reason;
+  data->warnings = data->solution.warnings;
+  if (!readable.ok()) data->warnings.push_back(readable.text);
+  if (!guarded.problem().empty()) data->warnings.push_back(guarded.problem());
+  data->input_files = session.composition.input_files;
+  return SimulationResult(std::move(data));
+}
+
+}  // namespace bowstring::solving
