@@ -73,9 +73,13 @@ void print_table(const Session& session, const Solution& solution, const Reading
   line("row penetration", certificate.penetration, "mm");
   line("penetration along the wire", certificate.dense_penetration(), "mm");
   line("complementarity", certificate.complementarity, "N mm");
-  if (!std::isfinite(certificate.minimum_stretch)) return;
-  std::printf("  %-26s %12s … %s\n", "vessel stretch ratio", number(certificate.minimum_stretch, 4).c_str(),
-              number(certificate.maximum_stretch, 4).c_str());
+  if (std::isfinite(certificate.minimum_stretch)) {
+    std::printf("  %-26s %12s … %s\n", "vessel stretch ratio", number(certificate.minimum_stretch, 4).c_str(),
+                number(certificate.maximum_stretch, 4).c_str());
+  }
+  const char* second = curvature_name(certificate.second_order.curvature);
+  std::printf("  %-26s %12s %s\n", "second order", second == nullptr ? "not judged" : second,
+              certificate.second_order.reason.c_str());
 }
 
 }  // namespace

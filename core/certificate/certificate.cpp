@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/certificate/activity.hpp"
 #include "core/contact/crossing.hpp"
 #include "core/curve/arc_length.hpp"
 
@@ -13,9 +14,7 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr double bound_reach = 1e-6;      // a real unknown so near its bound (relative) lies on it
-constexpr double weak_gap = 1e-6;         // mm: such a row touches …
-constexpr double weak_multiplier = 1e-6;  // N: … and carries no more than this
+constexpr double bound_reach = 1e-6;  // a real unknown so near its bound (relative) lies on it
 
 std::string number(double value, int digits = 4) {
   char text[40];
@@ -62,16 +61,11 @@ void judge_rows(const Assembly& assembly, const std::vector<double>& residual, S
     const double upper = assembly.row_upper()[at(r)];
     out.penetration = worst(worst(out.penetration, residual[at(r)] - upper), lower - residual[at(r)]);
     if (lower == upper) continue;
-    // A multiplier pushes away from one bound; where that bound does not exist its sign is wrong.
-    const double multiplier = multipliers[at(r)];
-    const bool from_upper = std::isfinite(upper) && (multiplier >= 0.0 || !std::isfinite(lower));
-    const double bound = from_upper ? upper : lower;
-    const double signed_multiplier = from_upper ? multiplier : -multiplier;
-    const double distance = std::fabs(residual[at(r)] - bound);
-    out.minimum_multiplier = any ? std::min(out.minimum_multiplier, signed_multiplier) : signed_multiplier;
+    const RowSide side = row_side(lower, upper, residual[at(r)], multipliers[at(r)]);
+    out.minimum_multiplier = any ? std::min(out.minimum_multiplier, side.multiplier) : side.multiplier;
     any = true;
-    out.complementarity = worst(out.complementarity, std::fabs(multiplier) * distance);
-    if (distance <= weak_gap && signed_multiplier <= weak_multiplier) out.weakly_active.push_back(r);
+    out.complementarity = worst(out.complementarity, std::fabs(side.multiplier) * side.distance);
+    if (activity(side) == Activity::weak) out.weakly_active.push_back(r);
   }
 }
 
@@ -166,15 +160,27 @@ std::string misses(const Certificate& c, const CertificateTable& t) {
   return text;
 }
 
-void conclude(const CertificateTable& thresholds, Claim claim, const std::string& claim_reason, Certificate& out) {
-  const std::string missed = misses(out, thresholds);
-  out.first_order = missed.empty();
+/// What `require` asks for and the point does not have; empty: nothing.
+std::string unmet(const CertificateTable& thresholds, const SecondOrder& second) {
+  if (thresholds.require != "minimum" || second.curvature == Curvature::minimum) return "";
+  const char* name = curvature_name(second.curvature);
+  return "[certificate] require = \"minimum\": it is an equilibrium, but " +
+         (name == nullptr ? "no second-order verdict exists" : "second order says " + std::string(name)) + " (" +
+         second.reason + ")";
+}
+
+void conclude(const CertificateTable& thresholds, Claim claim, const std::string& claim_reason,
+              const std::string& missed, Certificate& out) {
   const std::string flaw =
       !out.crossings.empty() ? out.crossings.front() : (out.folds.empty() ? "" : out.folds.front());
   const std::string mend =
       !out.crossings.empty() ? "; use a finer wire mesh, a constraint with rows between the nodes, or walk the load up"
                              : "; give the vessel a stretch-stiffness, or a coarser mesh";
-  if (out.first_order && flaw.empty()) {
+  const std::string wanting = unmet(thresholds, out.second_order);
+  if (out.first_order && flaw.empty() && !wanting.empty()) {
+    out.verdict = Verdict::stalled;
+    out.reason = wanting;
+  } else if (out.first_order && flaw.empty()) {
     out.verdict = Verdict::converged;
     out.reason = "all thresholds of the certificate hold";
   } else if (out.first_order) {
@@ -241,7 +247,14 @@ Status certify(Assembly& assembly, Span<const double> q, Span<const double> mult
   judge_folds(assembly, thresholds.minimum_stretch, out);
   judge_crossings(assembly, out);
   out.rounding_floor = assembly.rounding_floor();
-  conclude(thresholds, claim, claim_reason, out);
+  const std::string missed = misses(out, thresholds);
+  out.first_order = missed.empty();
+  if (out.first_order) {
+    judge_second_order(assembly, q, multipliers, out.stationarity, out.second_order);
+  } else {
+    out.second_order.reason = "the first-order conditions are not met";
+  }
+  conclude(thresholds, claim, claim_reason, missed, out);
   return {};
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/assembly/assembly.hpp"
+#include "core/certificate/second_order.hpp"
 #include "core/certificate/verdict.hpp"
 #include "core/composition/composition.hpp"
 #include "core/contact/crossing.hpp"
@@ -31,6 +32,7 @@ struct Certificate {
   std::vector<std::string> folds;      ///< each: place and amount of a folded edge or an active bound
   std::vector<std::string> crossings;  ///< each: place and amount of a wall crossed between rows
   bool first_order = false;  ///< stationarity, rows, complementarity and multipliers are within the thresholds
+  SecondOrder second_order;  ///< judged where `first_order` holds
   Verdict verdict = Verdict::failed;
   std::string reason;
 

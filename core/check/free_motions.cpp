@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/check/unknowns.hpp"
 #include "core/lie/so3.hpp"
@@ -24,6 +25,31 @@ Eigen::MatrixXd null_space(const Eigen::MatrixXd& matrix, double tolerance) {
   Eigen::Index count = 0;
   while (count < n && eigen.eigenvalues()[count] <= limit * limit) ++count;
   return eigen.eigenvectors().leftCols(count);
+}
+
+std::vector<std::vector<int>> bodies(const Assembly& assembly) {
+  const Scene& scene = assembly.scene();
+  std::vector<int> root(scene.curves.size());
+  std::iota(root.begin(), root.end(), 0);
+  for (const ConstraintUse& use : scene.constraints) {
+    for (int r = 0; r < use.rows.rows; ++r) {
+      if (use.rows.lower[at(r)] != use.rows.upper[at(r)]) continue;
+      for (int p = use.rows.place_begin[at(r)] + 1; p < use.rows.place_begin[at(r) + 1]; ++p) {
+        const int from = root[at(use.rows.places[at(p)].curve)];
+        const int to = root[at(use.rows.places[at(use.rows.place_begin[at(r)])].curve)];
+        std::replace(root.begin(), root.end(), from, to);
+      }
+    }
+  }
+  std::vector<std::vector<int>> out;
+  for (int leader = 0; leader < static_cast<int>(root.size()); ++leader) {
+    std::vector<int> curves;
+    for (int c = 0; c < static_cast<int>(root.size()); ++c) {
+      if (root[at(c)] == leader) curves.push_back(c);
+    }
+    if (!curves.empty()) out.push_back(curves);
+  }
+  return out;
 }
 
 Body::Body(Assembly& assembly, const Mover& mover, const std::vector<double>& q, std::vector<int> curves)

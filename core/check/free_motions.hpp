@@ -9,6 +9,9 @@
 
 namespace bowstring::checking {
 
+/// Sets of curves that equality rows tie together.
+std::vector<std::vector<int>> bodies(const Assembly& assembly);
+
 /// Curves that move as one body, and the candidates for motions that nothing resists: translations, rotations about the
 /// centre, turns of each curve's frames about its tangent. A candidate moves the farthest point, or a point as far from
 /// a tangent, by 1 mm per unit.

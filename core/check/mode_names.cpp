@@ -116,31 +116,22 @@ class ModeNames {
   }
 
  public:
-  std::vector<CheckLine> name(const std::vector<double>& q, Dense modes, bool at_least) const {
-    std::vector<CheckLine> out;
-    const std::string least = at_least ? "at least " : "";
-    constexpr double unjudged = std::numeric_limits<double>::quiet_NaN();
-    const auto add = [&](const std::string& subject, int count, const std::string& text) {
-      out.push_back({CheckVerdict::note, subject, "soft modes", unjudged, "", least + std::to_string(count) + text});
-    };
+  std::vector<ModeFamily> families(const std::vector<double>& q, Dense modes) const {
+    std::vector<ModeFamily> out;
     for (const auto& curve : assembly_.scene().curves) {
       const std::string subject = "'" + curve->name + "'";
-      if (const int count = take_rigid(q, curve->view.index, modes); count > 0) {
-        add(subject, count, " near zero: at the start it is free to move as a rigid body");
-      }
-      if (const int count = take_sliding(q, curve->view.index, modes); count > 0) {
-        add(subject, count, " near zero: its nodes may slide along it");
-      }
-      if (const int count = take_twist(curve->view.index, modes); count > 0) {
-        add(subject, count, " near zero: single frames may turn about their tangents");
-      }
+      const auto add = [&](int count, const char* text) {
+        if (count > 0) out.push_back({subject, count, text});
+      };
+      add(take_rigid(q, curve->view.index, modes), "at the start it is free to move as a rigid body");
+      add(take_sliding(q, curve->view.index, modes), "its nodes may slide along it");
+      add(take_twist(curve->view.index, modes), "single frames may turn about their tangents");
       if (modes.cols() == 0) return out;
     }
     Eigen::Index most = 0;
     modes.rowwise().norm().maxCoeff(&most);
-    add("the scene", static_cast<int>(modes.cols()),
-        " near zero that no rigid motion explains; what moves most is " +
-            unknown_name(assembly_, static_cast<int>(most)));
+    out.push_back({"the scene", static_cast<int>(modes.cols()),
+                   "what moves most is " + unknown_name(assembly_, static_cast<int>(most))});
     return out;
   }
 
@@ -152,9 +143,22 @@ class ModeNames {
 
 }  // namespace
 
+std::vector<ModeFamily> mode_families(const Assembly& assembly, const std::vector<double>& q, const Numbers& scale,
+                                      Dense modes) {
+  return ModeNames(assembly, scale).families(q, std::move(modes));
+}
+
 std::vector<CheckLine> name_modes(const Assembly& assembly, const std::vector<double>& q, const Numbers& scale,
                                   Dense modes, bool at_least) {
-  return ModeNames(assembly, scale).name(q, std::move(modes), at_least);
+  constexpr double unjudged = std::numeric_limits<double>::quiet_NaN();
+  std::vector<CheckLine> out;
+  for (const ModeFamily& family : mode_families(assembly, q, scale, std::move(modes))) {
+    const std::string what =
+        family.subject == "the scene" ? " near zero that no rigid motion explains; " : " near zero: ";
+    out.push_back({CheckVerdict::note, family.subject, "soft modes", unjudged, "",
+                   (at_least ? "at least " : "") + std::to_string(family.count) + what + family.text});
+  }
+  return out;
 }
 
 }  // namespace bowstring::checking

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/check/free_motions.hpp"
 #include "core/check/unknowns.hpp"
@@ -18,32 +17,6 @@ constexpr double no_stiffness = 1e-9;  // of what the Hessian's diagonal alone w
 constexpr double least_force = 1e-10;  // N: less is rounding, far below what a certificate asks for
 constexpr double no_force = 1e-8;      // of what the gradient's entries would give if none cancelled
 constexpr double same = 1e-7;
-
-/// Sets of curves that equality rows tie together.
-std::vector<std::vector<int>> bodies(const Assembly& assembly) {
-  const Scene& scene = assembly.scene();
-  std::vector<int> root(scene.curves.size());
-  std::iota(root.begin(), root.end(), 0);
-  for (const ConstraintUse& use : scene.constraints) {
-    for (int r = 0; r < use.rows.rows; ++r) {
-      if (use.rows.lower[at(r)] != use.rows.upper[at(r)]) continue;
-      for (int p = use.rows.place_begin[at(r)] + 1; p < use.rows.place_begin[at(r) + 1]; ++p) {
-        const int from = root[at(use.rows.places[at(p)].curve)];
-        const int to = root[at(use.rows.places[at(use.rows.place_begin[at(r)])].curve)];
-        std::replace(root.begin(), root.end(), from, to);
-      }
-    }
-  }
-  std::vector<std::vector<int>> out;
-  for (int leader = 0; leader < static_cast<int>(root.size()); ++leader) {
-    std::vector<int> curves;
-    for (int c = 0; c < static_cast<int>(root.size()); ++c) {
-      if (root[at(c)] == leader) curves.push_back(c);
-    }
-    if (!curves.empty()) out.push_back(curves);
-  }
-  return out;
-}
 
 class RigidSearch {
  public:

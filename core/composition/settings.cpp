@@ -115,11 +115,6 @@ CertificateTable read_certificate(const Node& root, Report& report) {
   take("multiplier", certificate.multiplier);
   take("minimum-stretch", certificate.minimum_stretch);
   if (values.has("require")) certificate.require = values.text("require");
-  if (certificate.require == "minimum") {
-    report.error(table.find("require")->value.position,
-                 "'require' of [certificate] is \"minimum\", but no second-order verdict exists yet in this version",
-                 "'none'", "remove it: the result says whether it is an equilibrium, not whether it is a minimum");
-  }
   return certificate;
 }
 

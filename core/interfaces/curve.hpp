@@ -41,7 +41,7 @@ struct CurveView {
   const double* arc = nullptr;          ///< nodes: arc coordinate, mm
   double start_length = 0.0;            ///< L at the start without held edges, mm
   double held_length = 0.0;             ///< sum of the held edges' lengths, mm
-  double end_distance = 0.0;            ///< distance of the two end nodes with their prescribed moves, mm
+  double end_distance = 0.0;            ///< of the two end nodes in State 1 with their prescribed moves, mm
   EndCondition end[2];                  ///< first end, last end
 };
 

@@ -16,20 +16,25 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int no_slot = std::numeric_limits<int>::min();
 constexpr int most_in_row = 64;          // retained unknowns of one row
+// ρ, of the mean diagonal entry that the rows meet; 1 would cancel a negative one that a row reads alone.
+constexpr double row_weight = 2.0;
 constexpr double dual_slack = 1e-10;     // of 1/ρ
 constexpr double largest_growth = 1e12;  // beyond it the factor says nothing
 constexpr double refined = 1e-9;         // relative residual that needs no further refinement
 
 }  // namespace
 
-void KktSystem::analyse(const Problem& problem, Span<const double> jacobian) {
+void KktSystem::analyse(const Problem& problem, Span<const double> jacobian, Span<const char> held) {
   n_ = problem.unknowns();
   m_ = problem.rows();
   hessian_ = problem.hessian_pattern();
   jacobian_ = problem.jacobian_pattern();
   scale_.assign(problem.stationarity_scale().begin(), problem.stationarity_scale().end());
   exact_.resize(at(m_));
-  for (int r = 0; r < m_; ++r) exact_[at(r)] = problem.row_lower()[at(r)] == problem.row_upper()[at(r)] ? 1 : 0;
+  for (int r = 0; r < m_; ++r) {
+    const bool equality = problem.row_lower()[at(r)] == problem.row_upper()[at(r)];
+    exact_[at(r)] = equality || (!held.empty() && held[at(r)] != 0) ? 1 : 0;
+  }
   // Places' own rows and unknowns outlive epochs, and so does their elimination while it is sound.
   if (!local_.fits(problem) || !local_.update(jacobian)) local_.analyse(problem, jacobian);
   number_slots(problem);
@@ -409,7 +414,7 @@ void KktSystem::assemble(const Values& values) {
       squares += value[k] * value[k] * value[k] * value[k];
     }
   });
-  weight_ = squares > 0.0 && diagonal > 0.0 ? diagonal / squares : 1.0;
+  weight_ = squares > 0.0 && diagonal > 0.0 ? row_weight * diagonal / squares : 1.0;
   slack_ = dual_slack / weight_;
   for_rows([&](int s, int count) {
     add_outer(slot, value, count, weight_);

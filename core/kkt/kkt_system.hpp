@@ -28,13 +28,13 @@ class KktSystem {
   enum class Row : char { exact, soft, off };
 
   /// Patterns and order of the problem's epoch; `jacobian` decides which local unknowns are eliminated. Equality rows
-  /// are exact, others soft or off. Allocates.
-  void analyse(const Problem& problem, Span<const double> jacobian);
+  /// are exact, and those marked in `held` (m, or none); others are soft or off. Allocates.
+  void analyse(const Problem& problem, Span<const double> jacobian, Span<const char> held = {});
 
   struct Values {
     Span<const double> hessian;   ///< of the pattern
     Span<const double> jacobian;  ///< of the pattern
-    /// m. Of an inequality row: e > 0, what it is condensed with; infinity: it is off. Of an equality row it is not
+    /// m. Of an inequality row: e > 0, what it is condensed with; infinity: it is off. Of an exact row it is not
     /// read.
     Span<const double> softness;
     double shift = 0.0;  ///< added to W's diagonal, per scale²

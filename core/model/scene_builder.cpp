@@ -341,9 +341,10 @@ void Builder::finish_view(Curve& curve, const WireTable* wire) {
   curve.view.start_length = curve.arc.back() - curve.view.held_length;
 
   double squared = 0.0;
-  for (int k = 0; k < d; ++k) {
-    const double difference = curve.start[at(edges * d + k)] - curve.start[at(k)];
-    squared += difference * difference;
+  for (int k = 0; k < d; ++k) {  // of State 1: the start may have turned an end that is free there
+    const double first = curve.reference[at(k)] + moves_[0][k];
+    const double last = curve.reference[at(edges * d + k)] + moves_[1][k];
+    squared += (last - first) * (last - first);
   }
   curve.view.end_distance = std::sqrt(squared);
   curve.view.index = static_cast<int>(scene_->curves.size());

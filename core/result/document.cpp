@@ -20,6 +20,8 @@ Json optional(const std::optional<double>& value) { return value ? Json(*value) 
 /// A finite number, or null: JSON has no other.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json word(const char* text) { return text == nullptr ? Json(nullptr) : Json(text); }
+
 Json vector(const double* numbers, int count) {
   Json out = Json::array();
   for (int k = 0; k < count; ++k) out.push_back(finite(numbers[k]));
@@ -110,6 +112,7 @@ Json solver(const SessionRecord& session, const Solution& solution) {
 }
 
 Json certificate(const Certificate& c) {
+  const bool judged = c.second_order.curvature != Curvature::unjudged;
   return {{"stationarity", finite(c.stationarity)},
           {"rounding_floor_N", finite(c.rounding_floor)},
           {"max_penetration_mm", finite(c.penetration)},
@@ -118,7 +121,13 @@ Json certificate(const Certificate& c) {
           {"max_stretch", finite(c.maximum_stretch)},
           {"complementarity", finite(c.complementarity)},
           {"min_multiplier", finite(c.minimum_multiplier)},
-          {"second_order", nullptr},
+          {"second_order", word(curvature_name(c.second_order.curvature))},
+          {"second_order_reason", c.second_order.reason},
+          {"negative_directions", judged ? Json(c.second_order.negative_directions) : Json(nullptr)},
+          {"leftmost_curvature_N_per_mm2", optional(c.second_order.leftmost_curvature)},
+          {"leftmost_mode", c.second_order.leftmost_mode.empty() ? Json(nullptr) : Json(c.second_order.leftmost_mode)},
+          {"neutral_modes", c.second_order.neutral_modes},
+          {"deciding_rows", c.second_order.deciding_rows},
           {"weakly_active", c.weakly_active},
           {"folds", c.folds},
           {"crossings", c.crossings},

@@ -32,6 +32,7 @@ Certificate unknown_certificate() {
   Certificate out;
   out.stationarity = out.rounding_floor = out.penetration = out.complementarity = out.minimum_multiplier = unknown;
   out.minimum_stretch = out.maximum_stretch = unknown;
+  out.second_order.reason = "the point could not be evaluated";
   out.verdict = Verdict::failed;
   return out;
 }

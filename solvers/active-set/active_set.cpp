@@ -1,5 +1,5 @@
 #include "plugins/sdk/plugin.hpp"
-#include "solvers/newton/active_set_method.hpp"
+#include "solvers/newton/hand_over.hpp"
 #include "solvers/shared/backend.hpp"
 
 namespace bowstring {
@@ -17,10 +17,8 @@ constexpr ParameterDeclaration schema[] = {
     backend::step_guard_key,
 };
 
-/// The barrier parameters at which the barrier method hands its point over, the next one where the active set does not
-/// settle.
+/// From cold the barrier method hands over as soon as the active set has taken shape. N mm
 constexpr double hand_overs[] = {1e-3, 1e-5, 1e-7};
-constexpr double warm_barrier = 1e-4;
 
 class ActiveSet final : public Solver {
  public:
@@ -50,7 +48,8 @@ class ActiveSet final : public Solver {
       point.q.assign(start.begin(), start.end());
       newton::Progress progress(limits_, context, out);
       std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
-      const newton::Ending ending = run(point, progress, multipliers);
+      const newton::Ending ending = newton::solve_by_hand_over(
+          point, progress, {{std::begin(hand_overs), std::end(hand_overs)}, true}, multipliers);
       out.q = point.q;
       out.multipliers = multipliers;
       out.claim = ending.claim;
@@ -59,37 +58,6 @@ class ActiveSet final : public Solver {
   }
 
  private:
-  static newton::Ending run(newton::Point& point, newton::Progress& progress, std::vector<double>& multipliers) {
-    bool warm = !multipliers.empty();
-    if (warm) {
-      bool new_epoch = false;
-      Status status = point.accept(new_epoch);
-      if (status.ok()) status = point.expand();
-      if (!status.ok()) throw StatusError(status);
-      newton::ActiveSetMethod method(point, progress);
-      newton::Ending ending = method.run(multipliers);
-      if (ending.claim != Claim::stalled || method.interrupted()) return ending;
-    }
-    for (const double barrier : hand_overs) {
-      newton::BarrierSettings settings;
-      if (warm) settings.first_barrier = std::max(warm_barrier, barrier);
-      settings.warm = warm;
-      settings.hand_over_barrier = barrier;
-      newton::BarrierMethod first(point, progress, settings);
-      newton::Ending ending = first.run(multipliers);
-      if (ending.claim != Claim::optimal) return ending;
-      newton::ActiveSetMethod second(point, progress);
-      ending = second.run(multipliers);
-      if (ending.claim != Claim::stalled || second.interrupted()) return ending;
-      warm = true;
-    }
-    newton::BarrierSettings settings;
-    settings.warm = true;
-    settings.first_barrier = hand_overs[2];
-    newton::BarrierMethod last(point, progress, settings);
-    return last.run(multipliers);
-  }
-
   newton::Limits limits_;
   double guard_ = 0.5;
 };

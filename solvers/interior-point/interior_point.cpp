@@ -1,5 +1,5 @@
 #include "plugins/sdk/plugin.hpp"
-#include "solvers/newton/barrier_method.hpp"
+#include "solvers/newton/hand_over.hpp"
 #include "solvers/shared/backend.hpp"
 
 namespace bowstring {
@@ -16,6 +16,9 @@ constexpr ParameterDeclaration schema[] = {
     backend::time_limit_key,
     backend::step_guard_key,
 };
+
+/// The last subproblems of the barrier are left to an active-set method: their rows are known by then. N mm
+constexpr double hand_overs[] = {1e-6};
 
 class InteriorPoint final : public Solver {
  public:
@@ -44,14 +47,9 @@ class InteriorPoint final : public Solver {
       newton::Point point(problem, out);
       point.q.assign(start.begin(), start.end());
       newton::Progress progress(limits_, context, out);
-      newton::BarrierSettings settings;
       std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
-      if (!multipliers.empty()) {
-        settings.warm = true;
-        settings.first_barrier = 1e-4;
-      }
-      newton::BarrierMethod method(point, progress, settings);
-      const newton::Ending ending = method.run(multipliers);
+      const newton::Ending ending = newton::solve_by_hand_over(
+          point, progress, {{std::begin(hand_overs), std::end(hand_overs)}, false}, multipliers);
       out.q = point.q;
       out.multipliers = multipliers;
       out.claim = ending.claim;

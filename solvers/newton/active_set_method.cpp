@@ -16,19 +16,23 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double infinity = std::numeric_limits<double>::infinity();
 // An active row gives way by its softness times the change of its force: a proximal step in the multipliers, which
 // keeps rows apart that say nearly the same (a chord's and its nodes'), and whose error vanishes with the change. mm/N
-constexpr double first_softness = 1e-5, softening = 0.1, last_softness = 1e-7;
+constexpr double first_softness = 1e-5, softening = 0.1, last_softness = 1e-8;
 constexpr double activity = 1.0;  // N/mm: a row is taken as active where its force exceeds that times its distance
+constexpr int few_changes = 2;
+constexpr double few_of_rows = 0.005;
 constexpr int most_changes_of_set = 6;  // at one point
 constexpr int refinements = 6;
-constexpr int patience = 4;          // steps that may pass without smaller errors
+// Times the tolerance, and times the error before: then the last factors serve for one more step.
+constexpr double near_enough = 30.0, fast_enough = 1e-2;
+constexpr int patience = 7;          // steps that may pass without smaller errors
 constexpr double bound_share = 0.9;  // of the way to a bound of an unknown
 constexpr double shortest_step = 1e-3;
 constexpr double pull = 1e-12;  // N: a predicted force so small may stay
 
 }  // namespace
 
-ActiveSetMethod::ActiveSetMethod(Point& point, Progress& progress)
-    : point_(point), progress_(progress), problem_(point.problem()) {
+ActiveSetMethod::ActiveSetMethod(Point& point, Progress& progress, bool hasty)
+    : point_(point), progress_(progress), problem_(point.problem()), hasty_(hasty) {
   sides_ = sides_of_rows(problem_);
   bounds_ = sides_of_unknowns(problem_);
   equalities_ = equality_rows(problem_);
@@ -80,27 +84,36 @@ ActiveSetMethod::Errors ActiveSetMethod::errors(const std::vector<double>& multi
 bool ActiveSetMethod::solve(const std::vector<double>& multipliers) {
   const auto start = std::chrono::steady_clock::now();
   const double softness = std::max(last_softness, first_softness * std::pow(softening, steps_));
-  std::fill(right_b_.begin(), right_b_.end(), 0.0);
-  for (const int r : equalities_) right_b_[at(r)] = problem_.row_lower()[at(r)] - point_.rows[at(r)];
   for (const Side& side : sides_) softness_[at(side.index)] = infinity;
   for (std::size_t k = 0; k < sides_.size(); ++k) {
-    if (active_[k] == 0) continue;
-    softness_[at(sides_[k].index)] = softness;
-    right_b_[at(sides_[k].index)] = sides_[k].bound - point_.rows[at(sides_[k].index)];
+    if (active_[k] != 0) softness_[at(sides_[k].index)] = softness;
   }
-  point_.lagrangian_gradient(multipliers, stationarity_);
-  for (std::size_t u = 0; u < right_a_.size(); ++u) right_a_[u] = -stationarity_[u];
   kkt::KktSystem::Values values;
   values.hessian = point_.hessian;
   values.jacobian = point_.jacobian;
   values.softness = softness_;
   const kkt::KktSystem::Outcome outcome = system_.factor(values);
   ++progress_.result().factorizations;
-  const bool good = outcome.exists && outcome.saddle_directions == 0;
-  if (good) system_.solve(right_a_, right_b_, {}, refinements, delta_, change_);
   progress_.result().factorization_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return good;
+  if (!outcome.exists || outcome.saddle_directions != 0) return false;
+  solve_again(multipliers, refinements);
+  return true;
+}
+
+/// With the last factors.
+void ActiveSetMethod::solve_again(const std::vector<double>& multipliers, int most_refinements) {
+  const auto start = std::chrono::steady_clock::now();
+  std::fill(right_b_.begin(), right_b_.end(), 0.0);
+  for (const int r : equalities_) right_b_[at(r)] = problem_.row_lower()[at(r)] - point_.rows[at(r)];
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    if (active_[k] != 0) right_b_[at(sides_[k].index)] = sides_[k].bound - point_.rows[at(sides_[k].index)];
+  }
+  point_.lagrangian_gradient(multipliers, stationarity_);
+  for (std::size_t u = 0; u < right_a_.size(); ++u) right_a_[u] = -stationarity_[u];
+  system_.solve(right_a_, right_b_, {}, most_refinements, delta_, change_);
+  progress_.result().factorization_seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Rows whose predicted force pulls leave, rows whose predicted gap is positive enter. Returns how many did.
@@ -123,12 +136,15 @@ int ActiveSetMethod::update_active(const std::vector<double>& multipliers) {
 }
 
 bool ActiveSetMethod::direction(std::vector<double>& multipliers) {
-  for (int k = 0;; ++k) {
+  const int share = static_cast<int>(few_of_rows * static_cast<double>(sides_.size()));
+  const int few = hasty_ ? std::max(few_changes, share) : 0;
+  for (int k = 0; k <= most_changes_of_set; ++k) {
     keep_active_forces(multipliers);
     if (!solve(multipliers)) return false;
-    if (k == most_changes_of_set) return true;
-    if (update_active(multipliers) == 0) return true;
+    changes_ = update_active(multipliers);
+    if (changes_ <= few) break;
   }
+  return true;
 }
 
 double ActiveSetMethod::longest_step() const {
@@ -161,8 +177,7 @@ bool ActiveSetMethod::step(std::vector<double>& multipliers, double& length) {
   return true;
 }
 
-bool ActiveSetMethod::accept() {
-  bool new_epoch = false;
+bool ActiveSetMethod::accept(bool& new_epoch) {
   if (!point_.accept(new_epoch).ok() || !point_.expand().ok()) return false;
   if (new_epoch) system_.analyse(problem_, point_.jacobian);
   return true;
@@ -173,7 +188,8 @@ Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
   const auto give_up = [&](const char* reason) -> Ending {
     point_.q = start_q;
     multipliers = start_multipliers;
-    if (!accept()) return {Claim::failed, "the start could not be evaluated again"};
+    bool new_epoch = false;
+    if (!accept(new_epoch)) return {Claim::failed, "the start could not be evaluated again"};
     return {Claim::stalled, reason};
   };
   const Limits& limits = progress_.limits();
@@ -182,8 +198,9 @@ Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
   choose_active(multipliers);
   keep_active_forces(multipliers);
   system_.analyse(problem_, point_.jacobian);
-  double best = infinity, length = 0.0;
+  double best = infinity, before = infinity, length = 0.0;
   int waited = 0;
+  bool factors_fit = false;
   for (bool settled = false;;) {
     const Errors now = errors(multipliers);
     if (!progress_.record(point_.energy, now.stationarity, now.violation, length)) {
@@ -194,15 +211,27 @@ Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
         now.complementarity <= limits.tolerance) {
       return {Claim::optimal, "the first-order conditions hold to the tolerance"};
     }
-    const double worst = std::max({now.stationarity / target, now.violation / limits.tolerance});
+    const double worst = std::max(now.stationarity / target, now.violation / limits.tolerance);
     waited = worst < 0.5 * best ? 0 : waited + 1;
     best = std::min(best, worst);
     if (waited > patience) return give_up("errors do not fall");
-    if (!point_.find_hessian(multipliers).ok()) return give_up("the Hessian could not be evaluated");
-    if (!direction(multipliers)) return give_up("curvature is negative on the active rows");
+    // Near the solution the last factors serve once more (a simplified Newton step).
+    const bool again = factors_fit && settled && worst < near_enough && worst < fast_enough * before;
+    before = worst;
+    if (again) {
+      solve_again(multipliers, 1);
+      changes_ = update_active(multipliers);
+      factors_fit = false;
+    } else {
+      if (!point_.find_hessian(multipliers).ok()) return give_up("the Hessian could not be evaluated");
+      if (!direction(multipliers)) return give_up("curvature is negative on the active rows");
+      factors_fit = true;
+    }
     if (!step(multipliers, length)) return give_up("the step guard stopped the step");
-    if (!accept()) return give_up("an accepted point could not be evaluated");
-    settled = length == 1.0;
+    bool new_epoch = false;
+    if (!accept(new_epoch)) return give_up("an accepted point could not be evaluated");
+    if (new_epoch) factors_fit = false;
+    settled = length == 1.0 && changes_ == 0;
     ++steps_;
   }
 }

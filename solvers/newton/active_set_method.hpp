@@ -18,7 +18,9 @@ namespace bowstring::newton {
 /// nowhere else: it gives up, and leaves the point where it began, when errors do not fall.
 class ActiveSetMethod {
  public:
-  ActiveSetMethod(Point& point, Progress& progress);
+  /// `hasty`: a few rows of a set that has not settled may change along with the next step, which saves factorizations
+  /// after a change of a load, and goes astray more often after a barrier method.
+  ActiveSetMethod(Point& point, Progress& progress, bool hasty);
 
   /// From point.q, which is accepted and expanded, and multipliers near a solution's. A claim other than `optimal`
   /// leaves both as they were, unless a limit was reached or the user stopped (`interrupted`).
@@ -38,11 +40,12 @@ class ActiveSetMethod {
   Errors errors(const std::vector<double>& multipliers);
   /// Solves for the step; false: the system has no positive curvature on the active rows' null space.
   bool solve(const std::vector<double>& multipliers);
+  void solve_again(const std::vector<double>& multipliers, int most_refinements);
   int update_active(const std::vector<double>& multipliers);
   bool direction(std::vector<double>& multipliers);
   double longest_step() const;
   bool step(std::vector<double>& multipliers, double& length);
-  bool accept();
+  bool accept(bool& new_epoch);
 
   Point& point_;
   Progress& progress_;
@@ -52,7 +55,8 @@ class ActiveSetMethod {
   std::vector<int> equalities_;
   std::vector<char> active_;  // per side
   std::vector<double> softness_, right_a_, right_b_, delta_, change_, stationarity_, trial_q_, trial_rows_;
-  int steps_ = 0;
+  bool hasty_;
+  int steps_ = 0, changes_ = 0;
   bool interrupted_ = false;
 };
 

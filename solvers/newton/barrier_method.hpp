@@ -19,12 +19,6 @@ struct BarrierSettings {
   bool warm = false;  ///< the start and its multipliers are near a solution
 };
 
-/// How a method ended.
-struct Ending {
-  Claim claim = Claim::failed;
-  std::string reason;
-};
-
 /// Primal-dual interior-point method with a filter line search (A. Wächter and L. T. Biegler, Math. Program. 106 (2006)
 /// 25; J. Nocedal and S. J. Wright, Numerical Optimization, chapter 19) for
 ///   min E(q)  subject to  c(q) = 0,  g(q) + s = 0, s ≥ 0,  and bounds on unknowns,

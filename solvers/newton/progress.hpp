@@ -14,6 +14,12 @@ struct Limits {
   double time_limit = std::numeric_limits<double>::infinity();  ///< s
 };
 
+/// How a method ended.
+struct Ending {
+  Claim claim = Claim::failed;
+  std::string reason;
+};
+
 /// History, limits and the user's wish to stop, over all phases of a solve.
 class Progress {
  public:

@@ -217,15 +217,6 @@ TEST_CASE("a planar scene with data in space") {
             "curve\n");
 }
 
-TEST_CASE("a minimum cannot be demanded before there is a verdict on it") {
-  const std::string text = planar() + "\n[certificate]\nrequire = \"minimum\"\n";
-  CHECK(refusal(text) ==
-        position("bad.toml", text, "\"minimum\"") +
-            ": 'require' of [certificate] is \"minimum\", but no second-order verdict exists yet in this "
-            "version; expected 'none'; remove it: the result says whether it is an equilibrium, not "
-            "whether it is a minimum\n");
-}
-
 TEST_CASE("all errors of a file at once, those of --set among them") {
   std::string text = edited(planar(), "\"10 N\"", "\"10 mm\"");
   text = edited(text, "type = \"anchoring\"", "type = \"anchorin\"");

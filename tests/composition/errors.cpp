@@ -219,12 +219,12 @@ TEST_CASE("a move is a displacement of an end that is held") {
   CHECK(scene.wires[0].end[0].move == std::vector<double>{10.0, 0.0});
 }
 
-TEST_CASE("a second-order verdict cannot be demanded yet") {
+TEST_CASE("what `converged` demands: a minimum, and thresholds in their bounds") {
   Workbench bench;
-  CHECK(bench.errors(test::small_scene, {{"certificate.require", "minimum"}}) ==
-        Texts{"--set certificate.require=minimum: 'require' of [certificate] is \"minimum\", but no second-order "
-              "verdict exists yet in this version; expected 'none'; remove it: the result says whether it is an "
-              "equilibrium, not whether it is a minimum"});
+  CHECK(bench.loaded(test::small_scene, {{"certificate.require", "minimum"}}).certificate.require == "minimum");
+  CHECK(bench.errors(test::small_scene, {{"certificate.require", "maximum"}}) ==
+        Texts{"--set certificate.require=maximum: 'require' of [certificate] is text \"maximum\"; expected 'none' or "
+              "'minimum'; did you mean 'minimum'?"});
   CHECK(bench.errors(test::small_scene, {{"certificate.multiplier", "1 N"}}) ==
         Texts{"--set certificate.multiplier=1 N: 'multiplier' of [certificate] is 1 N, out of bounds; "
               "expected at most 0 N; write a smaller number"});

@@ -203,4 +203,33 @@ TEST_CASE("turned edges are put together from the end that is held") {
   }
 }
 
+TEST_CASE("the chord of a sliding wire is State 1's, with what its ends are moved by, however the start is turned") {
+  const auto prepared = [](const std::string& ends) {
+    return session_of_file("planar-iliac-smooth.toml", {{"wire.lunderquist.ends", ends}});
+  };
+  const double tension = 10.0;
+  const auto check = [&](const std::string& ends, double chord) {
+    CAPTURE(ends);
+    const auto session = prepared(ends);
+    const Curve& wire = *session->scene->find("lunderquist");
+    CHECK(wire.view.end_distance == doctest::Approx(chord).epsilon(1e-14));
+    const std::vector<double> q = session->scene->start_coordinates();
+    std::vector<double> energies;
+    REQUIRE(session->assembly->term_energies(q, energies).ok());
+    for (std::size_t e = 0; e < energies.size(); ++e) {
+      if (session->scene->energies[e].plugin != "axial-tension") continue;
+      CHECK(energies[e] == doctest::Approx(tension * (wire.view.start_length - chord)).epsilon(1e-12));
+    }
+    double lower = 0.0;  // of the only length that is bounded from so high
+    for (const double bound : session->assembly->lower()) lower = std::max(lower, std::isfinite(bound) ? bound : 0.0);
+    CHECK(lower == doctest::Approx(0.5 * chord).epsilon(1e-14));
+    return wire.start;
+  };
+  const std::string roller = R"({ position = ["held", "free"], axes = "end" })";
+  const std::vector<double> straight = check(R"([{ type = "clamped" }, )" + roller + "]", 150.0);
+  const std::vector<double> turned = check(R"([{ type = "clamped", turn = "5 deg" }, )" + roller + "]", 150.0);
+  REQUIRE(std::fabs(turned.back() - straight.back()) > 1.0);
+  check(R"([{ type = "pinned", move = ["-2 mm", "3 mm"] }, "pinned"])", std::hypot(152.0, 3.0));
+}
+
 }  // namespace bowstring::testing

@@ -108,9 +108,9 @@ TEST_CASE("a path that leads nowhere says what there is") {
 }
 
 TEST_CASE("a value of another kind says which") {
-  CHECK(solved().number("certificate.second_order").error ==
-        "path 'certificate.second_order' leads to null: not known, or not defined in this scene; expected a number");
-  CHECK(std::isnan(solved().number("certificate.second_order").value));
+  CHECK(solved().number("certificate.leftmost_mode").error ==
+        "path 'certificate.leftmost_mode' leads to null: not known, or not defined in this scene; expected a number");
+  CHECK(std::isnan(solved().number("certificate.leftmost_mode").value));
   CHECK(solved().numbers("curves.iliac.twist_per_mm").error ==
         "path 'curves.iliac.twist_per_mm' leads to null: not known, or not defined in this scene; expected numbers");
   CHECK(solved().number("contacts.force_N").error ==

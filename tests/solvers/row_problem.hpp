@@ -29,6 +29,7 @@ class RowProblem final : public Problem {
     upper_bounds.assign(n, std::numeric_limits<double>::infinity());
     summary_.unknowns = unknowns();
     begin_.push_back(0);
+    for (int k = 0; k < unknowns() + static_cast<int>(rows_.size()); ++k) order_.push_back(k);
     for (const QuadraticRow& row : rows_) {
       (row.lower == row.upper ? summary_.equalities : summary_.inequalities) += 1;
       row_lower_.push_back(row.lower);
@@ -57,7 +58,7 @@ class RowProblem final : public Problem {
   Span<const double> upper() const noexcept override { return upper_bounds; }
   SparsityPattern jacobian_pattern() const noexcept override { return {begin_, inner_}; }
   SparsityPattern hessian_pattern() const noexcept override { return quadratic_.hessian_pattern(); }
-  Span<const int> order() const noexcept override { return quadratic_.order(); }
+  Span<const int> order() const noexcept override { return order_; }
   Span<const double> stationarity_scale() const noexcept override { return quadratic_.stationarity_scale(); }
 
   Status evaluate(Span<const double> q, const ProblemEvaluation& evaluation) noexcept override {
@@ -126,7 +127,7 @@ class RowProblem final : public Problem {
   std::vector<QuadraticRow> rows_;
   QuadraticProblem quadratic_;
   std::vector<double> row_lower_, row_upper_;
-  std::vector<int> begin_, inner_;
+  std::vector<int> begin_, inner_, order_;
   ProblemSummary summary_;
 };
 
