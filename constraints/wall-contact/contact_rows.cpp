@@ -74,8 +74,8 @@ void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion
   }
 }
 
-void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept {
-  const RowPoint point = locate(row, wall, wire, window);
+void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window, const RowPoint* known) noexcept {
+  const RowPoint point = known != nullptr ? *known : locate(row, wall, wire, window);
   const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
   const int dimension = wall.centerline.dimension;
   double x[3] = {};

@@ -69,8 +69,9 @@ void write_gradient(const Row& row, const Wall& wall, const contact::GapExpansio
 void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, double weight,
                    bool all_places, double* out) noexcept;
 
-/// Makes the state the row's accepted one.
-void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window) noexcept;
+/// Makes the state the row's accepted one. `point`: what `locate` answers there, where that is known.
+void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window,
+              const RowPoint* point = nullptr) noexcept;
 
 /// How far the row's point has moved since then, relative to its wall point and across the vessel, as a fraction of the
 /// clearance. `vessel`: all its node positions.

@@ -116,6 +116,7 @@ class WallContact final : public Constraint {
       if (evaluation.state == 0 || found.state != evaluation.state || again) {
         found.point = locate(row, wall, wire, evaluation.beyond_window ? reach_of(row) : row.window);
         found.state = evaluation.state;
+        found.beyond_window = evaluation.beyond_window;
         found.expanded = false;
       }
       if (found.point.closest.location == contact::Location::window_edge) return {Code::left_window, {}};
@@ -141,7 +142,11 @@ class WallContact final : public Constraint {
   Status accept(const PlaceTables& at) noexcept override {
     const Wall wall = wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
-    for (Row& row : rows_) refer_to(row, wall, wire, reach_of(row));
+    for (std::size_t r = 0; r < rows_.size(); ++r) {
+      const Found& found = found_[r];
+      const bool known = at.state() != 0 && found.state == at.state() && serves(rows_[r], found);
+      refer_to(rows_[r], wall, wire, reach_of(rows_[r]), known ? &found.point : nullptr);
+    }
     forget();
     return {};
   }
@@ -221,10 +226,11 @@ class WallContact final : public Constraint {
   }
 
  private:
-  /// What the last evaluation of a row found: further ones at that state have the same closest point.
+  /// What the last evaluation of a row found: further ones at that state, and its acceptance, have the same closest
+  /// point.
   struct Found {
     std::uint64_t state = 0;  // 0: nothing
-    bool expanded = false;
+    bool beyond_window = false, expanded = false;
     RowPoint point;
     contact::GapExpansion expansion;
   };
@@ -244,6 +250,14 @@ class WallContact final : public Constraint {
   static bool covers(const Row& row, const RowPoint& point) noexcept {
     const double sigma = point.closest.at.sigma();
     return sigma >= row.window.low && sigma <= row.window.high;
+  }
+
+  /// Whether a search of all that the row can reach would have ended at the same place, by the same steps.
+  bool serves(const Row& row, const Found& found) const noexcept {
+    if (found.point.closest.location == contact::Location::window_edge) return false;
+    if (found.beyond_window || !row.searches) return true;
+    const bool inside = row.sigma < row.window.high || row.window.high == vessel_.nodes - 1.0;
+    return inside && row.sigma >= row.window.low;
   }
 
   void check(const ConstraintScene& scene) const {

@@ -38,12 +38,14 @@ Assembly::Assembly(Scene& scene, Span<const double> start, const Assembly* like)
   make_tables();
   q_.assign(at(scene_.coordinates), 0.0);
   if (!start.empty()) place_rows_at(start);
-  make_rows();
+  number_rows();
+  read_rows();
   term_energy_.assign(scene_.energies.size(), 0.0);
   make_scales();
   if (like != nullptr && reads_like(*like)) {
     take_patterns(*like);
   } else {
+    make_lasting_patterns();
     make_patterns();
   }
 
@@ -93,12 +95,12 @@ Status Assembly::update_places(Span<const double> q, bool derivatives) {
   std::copy(q.begin(), q.end(), q_.begin());
   has_places_ = has_idle_places_ = has_energy_ = has_jacobians_ = has_rows_ = has_row_jacobians_ = guard_checked_ =
       false;
-  state_ = new_state();
+  state_ = place_state_ = new_state();
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = derivatives ? table.update_values_and_jacobian(curve_q(table.curve), state_)
-                                : table.update_values(curve_q(table.curve), state_);
+    Status status = derivatives ? table.update_values_and_jacobian(curve_q(table.curve), place_state_)
+                                : table.update_values(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_places_ = true;
@@ -111,7 +113,7 @@ Status Assembly::update_idle_places() {
   for (SiteTable& table : tables_) {
     if (table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = table.update_values(curve_q(table.curve), state_);
+    Status status = table.update_values(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_idle_places_ = true;
@@ -143,7 +145,7 @@ Status Assembly::update_jacobians() {
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
-    Status status = table.update_jacobian(curve_q(table.curve), state_);
+    Status status = table.update_jacobian(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve.name + "'");
   }
   has_jacobians_ = true;
@@ -351,7 +353,7 @@ Status Assembly::lagrangian_hessian(Span<const double> q, double energy_factor, 
   if (Status status = add_row_hessians(multipliers, values); !status.ok()) return status;
   for (SiteTable& table : tables_) {
     if (!table.read) continue;
-    Status status = table.update_curvature(curve_q(table.curve), state_);
+    Status status = table.update_curvature(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve_of(table).name + "'");
     table.add_hessian(energy_factor, values.data());
   }
@@ -423,7 +425,8 @@ bool Assembly::epoch_due() const noexcept {
 Status Assembly::new_epoch() noexcept {
   epoch_failure_ = bind_rows();
   if (!epoch_failure_.ok()) return epoch_failure_;
-  has_places_ = false;  // rows may read sites that nothing has read before
+  has_rows_ = has_row_jacobians_ = guard_checked_ = false;
+  state_ = new_state();
   ++epochs_;
   return {};
 }
@@ -448,7 +451,11 @@ Status Assembly::bind_rows() noexcept {
     Status status = place_rows(
         [](Constraint& constraint, const PlaceTables&, RowDeclaration& out) { return constraint.rebind(out); });
     if (!status.ok()) return status;
-    make_rows();
+    if (rows_stay()) return {};
+    if (read_rows()) {
+      has_places_ = false;
+      make_lasting_patterns();
+    }
     make_patterns();
   } catch (const std::exception& error) {
     return Status::failure(Code::failed, error.what());

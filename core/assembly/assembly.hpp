@@ -4,9 +4,11 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/assembly/constraint_rows.hpp"
+#include "core/assembly/key_order.hpp"
 #include "core/assembly/law_batch.hpp"
 #include "core/assembly/pattern.hpp"
 #include "core/interfaces/problem.hpp"
@@ -73,6 +75,7 @@ class Assembly final : public Problem, public PlaceTables {
 
   /// Table of y at the state last evaluated; null where the site does not exist.
   const double* table(int curve, Site site) const noexcept override;
+  std::uint64_t state() const noexcept override { return state_; }
 
   // What the certificate and the result document read. Each brings the state up to date first.
 
@@ -109,23 +112,33 @@ class Assembly final : public Problem, public PlaceTables {
   const SiteTable* find_table(int curve, Site site) const noexcept;
   void number_unknowns();
   void make_tables();
-  void make_rows();
+  void number_rows();
   /// Lets every constraint choose its rows' places anew.
   using Binding = Status (*)(Constraint&, const PlaceTables&, RowDeclaration&);
   Status place_rows(Binding bind);
   void place_rows_at(Span<const double> q);
   Status bind_rows() noexcept;
+  /// Reads the constraints' declarations. Answers whether that made tables be read that nothing had read before.
+  bool read_rows();
+  /// Whether the constraints' declarations are those that were read last.
+  bool rows_stay() const noexcept;
+  std::string missing_place(const ConstraintUse& use, int row) const;
+  /// What of the patterns lasts from epoch to epoch, as long as no further tables are read.
+  void make_lasting_patterns();
   void make_patterns();
   bool reads_like(const Assembly& other) const noexcept;
   void take_patterns(const Assembly& other);
   /// A row of a closure site: its entries begin at `first` of the table's Jacobian and stand at `position`.
   void note_closure_row(int table, int first, const int* position);
+  /// What closure rows alone say of the unknowns.
+  void count_closure_readers();
   void find_local_rows();
   void make_order();
+  /// Of a curve whose rows search places along another one: (its own arc fraction, that of the other curve).
+  void pair_places();
   /// Per free unknown: where along a vessel it stands, 0…1.
-  std::vector<double> places_along() const;
+  void place_along();
   void make_scales();
-  ConstraintRows make_constraint_rows(const ConstraintUse& use, int first_row);
 
   /// With `derivatives` the places' Jacobians too, which costs less than asking for them later.
   Status update_places(Span<const double> q, bool derivatives = false);
@@ -171,11 +184,21 @@ class Assembly final : public Problem, public PlaceTables {
   std::vector<char> closure_in_run_;  // per row
   std::vector<int> order_;
   int border_ = 0;
-  std::vector<char> whole_curve_;  // per free unknown: read by every closure place of its curve
+  std::vector<char> whole_curve_;                        // per free unknown: read by every closure place of its curve
+  std::vector<char> is_position_;                        // per free unknown
+  std::vector<int> closure_readers_, equality_readers_;  // per free unknown: closure places, and all equality rows
+  int closure_rows_ = 0;
+  bool local_rows_found_ = false, local_rows_of_constraints_ = false;  // with what the latter's equalities read
   std::vector<LocalRows> local_rows_;
   std::vector<int> local_unknowns_;
-  HessianPattern hessian_pattern_;
+  HessianPattern lasting_pattern_, hessian_pattern_;
   JacobianPattern jacobian_pattern_;
+  RowBlocks row_blocks_;
+  std::vector<int> lasting_position_;  // per entry of lasting_pattern_: its position in hessian_pattern_
+  std::vector<double> key_;            // per unknown and row
+  KeyOrder key_order_;
+  std::vector<std::vector<double>> node_fraction_;                     // per curve
+  std::vector<std::vector<std::pair<double, double>>> paired_places_;  // per curve
   ProblemSummary summary_;
   double guard_ = std::numeric_limits<double>::infinity();
   int epochs_ = 1;
@@ -183,7 +206,8 @@ class Assembly final : public Problem, public PlaceTables {
 
   // The state that the tables hold, and what of it has been computed.
   std::vector<double> q_;
-  std::uint64_t state_ = 0;  // of SiteEvaluation and RowEvaluation: new with q_, with what is accepted and bound
+  std::uint64_t place_state_ = 0;  // of SiteEvaluation: new with q_
+  std::uint64_t state_ = 0;        // of RowEvaluation: new with q_, with what is accepted and bound
   bool has_places_ = false, has_idle_places_ = false, has_energy_ = false, has_jacobians_ = false, has_rows_ = false,
        has_row_jacobians_ = false;
   bool rows_beyond_window_ = false;  // row_status_ is that of a search beyond the windows

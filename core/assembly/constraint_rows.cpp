@@ -49,86 +49,203 @@ int ConstraintRows::part_end(int row) const noexcept {
   return in_parts ? std::min(row + rows_per_part, rows()) : rows();
 }
 
+bool ConstraintRows::reads_as(const RowDeclaration& declaration, const std::vector<int>& table_of) const noexcept {
+  if (read_begin != declaration.place_begin) return false;
+  for (std::size_t k = 0; k < reads.size(); ++k) {
+    const Place& place = declaration.places[k];
+    const int table = table_of[at(place.curve * site_count + static_cast<int>(place.site))];
+    if (reads[k].index != place.index || reads[k].table != table) return false;
+  }
+  return true;
+}
+
+int ConstraintRows::bind(const RowDeclaration& declaration, const std::vector<int>& table_of,
+                         std::vector<SiteTable>& tables) {
+  in_parts = declaration.in_parts;
+  identity = true;
+  read_begin = declaration.place_begin;
+  reads.resize(declaration.places.size());
+  unknown.clear();
+  jacobian_begin.assign(1, 0);
+  hessian_begin.assign(1, 0);
+  unknown_begin.assign(1, 0);
+  for (int r = 0; r < rows(); ++r) {
+    int numbers = 0, unknowns = 0;
+    for (int p = read_begin[at(r)]; p < read_begin[at(r) + 1]; ++p) {
+      const Place& place = declaration.places[at(p)];
+      const int index = table_of[at(place.curve * site_count + static_cast<int>(place.site))];
+      if (index < 0 || place.index < 0 || place.index >= tables[at(index)].count()) return r;
+      SiteTable& table = tables[at(index)];
+      table.read = true;
+      const int width = table.width();
+      reads[at(p)] = {index,
+                      place.index,
+                      table.values(),
+                      width,
+                      numbers,
+                      unknowns,
+                      table.block[at(place.index)],
+                      table.declaration->identity};
+      identity = identity && table.declaration->identity;
+      numbers += table.values();
+      unknowns += width;
+      const int* of_place = table.free_unknown.data() + place.index * width;
+      unknown.insert(unknown.end(), of_place, of_place + width);
+    }
+    jacobian_begin.push_back(jacobian_begin.back() + numbers);
+    hessian_begin.push_back(hessian_begin.back() + packed_size(numbers));
+    unknown_begin.push_back(static_cast<int>(unknown.size()));
+  }
+  reserve_derivatives();
+  return -1;
+}
+
 void ConstraintRows::reserve_derivatives() {
-  jacobian.assign(at(jacobian_begin.back()), 0.0);
+  jacobian.resize(at(jacobian_begin.back()));
   int largest = 0;
   for (int r = 0; r < rows(); r = part_end(r)) {
     largest = std::max(largest, hessian_begin[at(part_end(r))] - hessian_begin[at(r)]);
   }
-  hessian.assign(at(largest), 0.0);
-  all_places.clear();
-  for (int r = 0; r < rows(); ++r) all_places.push_back({0, 0, read_begin[at(r) + 1] - read_begin[at(r)]});
+  hessian.resize(at(largest));
+  all_places.resize(at(rows()));
+  for (int r = 0; r < rows(); ++r) all_places[at(r)] = {0, 0, read_begin[at(r) + 1] - read_begin[at(r)]};
   jacobian_support = hessian_support = all_places;
 }
 
-/// The number of unknowns of each place, where it is the same for all and B = I; 0 otherwise.
+void ConstraintRows::sort_places(int row) noexcept {
+  const Read* of_row = reads.data() + read_begin[at(row)];
+  int* sorted = by_block.data() + read_begin[at(row)];
+  for (int p = 0; p < all_places[at(row)].count; ++p) {
+    int k = p;
+    for (; k > 0 && of_row[sorted[k - 1]].block > of_row[p].block; --k) sorted[k] = sorted[k - 1];
+    sorted[k] = p;
+  }
+}
+
+/// The number of unknowns of each place of a row as `Blocks` has them; 0 of other rows.
 int ConstraintRows::block_of(int row) const noexcept {
   const int first = read_begin[at(row)], end = read_begin[at(row) + 1];
-  for (int p = first; p < end; ++p) {
-    if (!reads[at(p)].identity || reads[at(p)].width != reads[at(first)].width) return 0;
+  for (int k = first; k < end; ++k) {
+    const Read& read = reads[at(first + by_block[at(k)])];
+    if (!read.identity || read.width != reads[at(first)].width || read.block == SiteTable::mixed) return 0;
+    const bool shared = k > first && read.block >= 0 && reads[at(first + by_block[at(k - 1)])].block == read.block;
+    if (shared) return 0;
   }
   return first == end ? 0 : reads[at(first)].width;
 }
 
-bool ConstraintRows::locate_blocks(int row, const BlockLayout& layout, const HessianPattern& pattern) {
-  const int block = block_of(row);
-  if (block == 0) return false;
-  const Blocks found{block, static_cast<int>(base.size()), static_cast<int>(length.size())};
-  const int* u = unknown.data() + unknown_begin[at(row)];
-  const SparsityPattern view = pattern.view();
-  const auto give_up = [&] {
-    base.resize(at(found.first_base));
-    length.resize(at(found.first_length));
-    return false;
-  };
-  for (int p = 0; p < all_places[at(row)].count; ++p) {
-    const int* of_p = u + p * block;
-    const auto held = std::count_if(of_p, of_p + block, [](int free) { return free < 0; });
-    if (held != 0 && held != block) return give_up();
-    length.push_back(held != 0 ? 0 : view.begin[at(*of_p) + 1] - view.begin[at(*of_p)]);
-    for (int s = 0; s <= p; ++s) {
-      const int* of_s = u + s * block;
-      if (*of_p < 0 || *of_s < 0) {
-        base.push_back(no_base);
-        continue;
-      }
-      const bool swapped = *of_s > *of_p;
-      const int first = pattern.position(layout, *of_p, *of_s);
-      const int columns = length[at(found.first_length + (swapped ? p : s))];
-      base.push_back(swapped ? ~first : first);
-      for (int i = 0; i < block; ++i) {
-        for (int j = 0; j < (s == p ? i + 1 : block); ++j) {
-          const int column = swapped ? i : j, inner = swapped ? j : i;
-          const int expected = first + inner + column * columns - column * (column + 1) / 2;
-          if (pattern.position(layout, of_p[i], of_s[j]) != expected) return give_up();
-        }
-      }
-    }
-  }
-  blocks[at(row)] = found;
-  return true;
-}
-
-void ConstraintRows::locate(const BlockLayout& layout, const HessianPattern& hessian_pattern,
-                            const JacobianPattern& jacobian_pattern) {
-  jacobian_position.clear();
-  hessian_position.clear();
-  base.clear();
-  length.clear();
-  blocks.assign(at(rows()), {});
-  hessian_position_begin.assign(1, 0);
+void ConstraintRows::add_patterns(const BlockLayout& layout, RowBlocks& row_blocks, JacobianPattern& jacobian_pattern) {
+  blocks.resize(at(rows()));
+  by_block.resize(reads.size());
+  jacobian_position.resize(unknown.size());
   for (int r = 0; r < rows(); ++r) {
     const int* u = unknown.data() + unknown_begin[at(r)];
     const int count = unknown_begin[at(r) + 1] - unknown_begin[at(r)];
-    for (int a = 0; a < count; ++a) {
-      jacobian_position.push_back(u[a] < 0 ? -1 : jacobian_pattern.position(first_row + r, u[a]));
-    }
-    if (!locate_blocks(r, layout, hessian_pattern)) {
+    int* position = jacobian_position.data() + unknown_begin[at(r)];
+    sort_places(r);
+    const int block = block_of(r);
+    blocks[at(r)] = {block, 0, 0};
+    row_blocks_.clear();
+    if (block == 0) {
       for (int a = 0; a < count; ++a) {
-        for (int b = 0; b <= a; ++b) {
-          hessian_position.push_back(u[a] < 0 || u[b] < 0 ? -1 : hessian_pattern.position(layout, u[a], u[b]));
-        }
+        if (u[a] >= 0) row_blocks_.push_back(layout.block_of_unknown[at(u[a])]);
       }
+      std::sort(row_blocks_.begin(), row_blocks_.end());
+      row_blocks_.erase(std::unique(row_blocks_.begin(), row_blocks_.end()), row_blocks_.end());
+      jacobian_pattern.add_row(u, count);
+      const int row = jacobian_pattern.rows() - 1;
+      for (int a = 0; a < count; ++a) position[a] = u[a] < 0 ? -1 : jacobian_pattern.position(row, u[a]);
+    } else {
+      const int* sorted = by_block.data() + read_begin[at(r)];
+      for (int k = 0; k < all_places[at(r)].count; ++k) {
+        const int of_block = reads[at(read_begin[at(r)] + sorted[k])].block;
+        const int first = sorted[k] * block;
+        const bool free = of_block >= 0;
+        const int start = free ? jacobian_pattern.add_run(u[first], block) : 0;
+        for (int a = 0; a < block; ++a) position[first + a] = free ? start + a : -1;
+        if (free) row_blocks_.push_back(of_block);
+      }
+      jacobian_pattern.end_row();
+    }
+    row_blocks.add_row(row_blocks_.data(), static_cast<int>(row_blocks_.size()));
+  }
+}
+
+/// Whether a row reads the places of the one before it, as those do that hold one place along several axes.
+bool ConstraintRows::repeats(int row) const noexcept {
+  if (row == 0 || all_places[at(row)].count != all_places[at(row - 1)].count) return false;
+  const Read* now = reads.data() + read_begin[at(row)];
+  const Read* before = reads.data() + read_begin[at(row - 1)];
+  for (int p = 0; p < all_places[at(row)].count; ++p) {
+    if (now[p].index != before[p].index || now[p].table != before[p].table) return false;
+  }
+  return true;
+}
+
+void ConstraintRows::locate_blocks(int row, const BlockLayout& layout, const HessianPattern& pattern) {
+  Blocks& found = blocks[at(row)];
+  if (repeats(row)) {
+    found = blocks[at(row - 1)];
+    return;
+  }
+  found.first_base = static_cast<int>(base.size());
+  found.first_length = static_cast<int>(length.size());
+  const int places = all_places[at(row)].count;
+  base.resize(base.size() + at(packed_size(places)));
+  length.resize(length.size() + at(places));
+  int* of_pair = base.data() + found.first_base;
+  int* of_place = length.data() + found.first_length;
+  const Read* of_row = reads.data() + read_begin[at(row)];
+  const int* u = unknown.data() + unknown_begin[at(row)];
+  const int* sorted = by_block.data() + read_begin[at(row)];
+  const int* begin = pattern.view().begin.data();
+  int first_free = 0;
+  while (first_free < places && of_row[sorted[first_free]].block < 0) of_place[sorted[first_free++]] = 0;
+  if (first_free > 0) std::fill(of_pair, of_pair + packed_size(places), no_base);
+  for (int a = first_free; a < places; ++a) {
+    const int s = sorted[a];
+    const int column_block = of_row[s].block, column = u[s * found.block];
+    const int below = begin[column] + layout.begin[at(column_block) + 1] - column;
+    of_place[s] = begin[column + 1] - begin[column];
+    of_pair[packed_index(s, s)] = begin[column];
+    int pair = pattern.diagonal_pair(column_block);
+    for (int b = a + 1, before = column_block; b < places; ++b) {
+      const int p = sorted[b];
+      const int row_block = of_row[p].block;
+      if (row_block == before + 1) {
+        ++pair;
+      } else {
+        int& last = last_pair_[at(column_block)];
+        last = pair = pattern.find_pair(row_block, column_block, last + 1);
+      }
+      before = row_block;
+      const int first = below + pattern.pair_offset(pair) + u[p * found.block] - layout.begin[at(row_block)];
+      of_pair[p > s ? packed_index(p, s) : packed_index(s, p)] = p > s ? first : ~first;
+    }
+  }
+}
+
+void ConstraintRows::locate_entries(int row, const BlockLayout& layout, const HessianPattern& pattern) {
+  const int* u = unknown.data() + unknown_begin[at(row)];
+  const int count = unknown_begin[at(row) + 1] - unknown_begin[at(row)];
+  for (int a = 0; a < count; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      hessian_position.push_back(u[a] < 0 || u[b] < 0 ? -1 : pattern.position(layout, u[a], u[b]));
+    }
+  }
+}
+
+void ConstraintRows::locate(const BlockLayout& layout, const HessianPattern& hessian_pattern) {
+  last_pair_.resize(at(layout.blocks()), -1);
+  hessian_position.clear();
+  base.clear();
+  length.clear();
+  hessian_position_begin.assign(1, 0);
+  for (int r = 0; r < rows(); ++r) {
+    if (blocks[at(r)].block != 0) {
+      locate_blocks(r, layout, hessian_pattern);
+    } else {
+      locate_entries(r, layout, hessian_pattern);
     }
     hessian_position_begin.push_back(static_cast<int>(hessian_position.size()));
   }

@@ -99,6 +99,18 @@ SiteTable make_site_table(const Curve& curve, const SiteDeclaration& declaration
   return table;
 }
 
+void SiteTable::find_blocks(const std::vector<int>& block_of_unknown) {
+  for (int i = 0; i < count(); ++i) {
+    const int* u = free_unknown.data() + at(i) * at(width());
+    const auto none = std::count_if(u, u + width(), [](int free) { return free < 0; });
+    int found = none == width() ? held : none > 0 ? mixed : block_of_unknown[at(u[0])];
+    for (int k = 0; found >= 0 && k < width(); ++k) {
+      if (u[k] != u[0] + k || block_of_unknown[at(u[k])] != found) found = mixed;
+    }
+    block.push_back(found);
+  }
+}
+
 bool SiteTable::needs_jacobian() const noexcept {
   return !declaration->identity && !(declaration->linear && has_jacobian_);
 }

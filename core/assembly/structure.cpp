@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "core/assembly/assembly.hpp"
@@ -76,6 +75,7 @@ void Assembly::make_tables() {
       table_of_[at(curve->view.index * site_count + static_cast<int>(site.site))] = static_cast<int>(tables_.size());
       tables_.push_back(make_site_table(*curve, site));
       for (const int u : tables_.back().unknown) tables_.back().free_unknown.push_back(u < 0 ? -1 : free_[at(u)]);
+      tables_.back().find_blocks(blocks_.block_of_unknown);
     }
   }
   const std::vector<double> reference = scene_.reference_coordinates();
@@ -101,51 +101,7 @@ void Assembly::make_tables() {
   }
 }
 
-ConstraintRows Assembly::make_constraint_rows(const ConstraintUse& use, int first_row) {
-  ConstraintRows out;
-  out.first_row = first_row;
-  out.in_parts = use.rows.in_parts;
-  const RowDeclaration& rows = use.rows;
-  out.read_begin.assign(1, 0);
-  out.jacobian_begin.assign(1, 0);
-  out.hessian_begin.assign(1, 0);
-  out.unknown_begin.assign(1, 0);
-  for (int r = 0; r < rows.rows; ++r) {
-    int numbers = 0, unknowns = 0;
-    for (int p = rows.place_begin[at(r)]; p < rows.place_begin[at(r) + 1]; ++p) {
-      const Place& place = rows.places[at(p)];
-      const int index = table_of_[at(place.curve * site_count + static_cast<int>(place.site))];
-      if (index < 0 || place.index < 0 || place.index >= tables_[at(index)].count()) {
-        throw std::runtime_error("constraint '" + use.label + "': row " + std::to_string(r) +
-                                 " reads a place that curve '" + scene_.curves[at(place.curve)]->name +
-                                 "' does not have");
-      }
-      SiteTable& table = tables_[at(index)];
-      table.read = true;
-      out.reads.push_back(
-          {index, place.index, table.values(), table.width(), numbers, unknowns, table.declaration->identity});
-      out.identity = out.identity && table.declaration->identity;
-      numbers += table.values();
-      unknowns += table.width();
-      for (int k = 0; k < table.width(); ++k) {
-        const int unknown = table.unknown[at(place.index * table.width() + k)];
-        out.unknown.push_back(unknown < 0 ? -1 : free_[at(unknown)]);
-      }
-    }
-    out.read_begin.push_back(static_cast<int>(out.reads.size()));
-    out.jacobian_begin.push_back(out.jacobian_begin.back() + numbers);
-    out.hessian_begin.push_back(out.hessian_begin.back() + packed_size(numbers));
-    out.unknown_begin.push_back(static_cast<int>(out.unknown.size()));
-  }
-  out.reserve_derivatives();
-  return out;
-}
-
-void Assembly::make_rows() {
-  origins_.clear();
-  row_lower_.clear();
-  row_upper_.clear();
-  summary_.row_groups.clear();
+void Assembly::number_rows() {
   for (const SiteTable& table : tables_) {
     if (table.declaration->site != Site::closure || table.count() == 0) continue;
     const Curve& curve = *scene_.curves[at(table.curve)];
@@ -153,28 +109,68 @@ void Assembly::make_rows() {
     const std::string name = curve.name + ".closure";
     const std::string text =
         curve.declaration.closure_name + " of '" + curve.name + "' (" + std::to_string(count) + ")";
-    origins_.push_back({table.curve, -1, static_cast<int>(row_lower_.size()), count, name});
-    summary_.row_groups.push_back({name, text, static_cast<int>(row_lower_.size()), count, true});
+    origins_.push_back({table.curve, -1, rows(), count, name});
+    summary_.row_groups.push_back({name, text, rows(), count, true});
     row_lower_.resize(row_lower_.size() + at(count), 0.0);
     row_upper_.resize(row_lower_.size(), 0.0);
   }
-  summary_.equalities = static_cast<int>(row_lower_.size());
-  summary_.inequalities = 0;
-  constraints_.clear();
-  for (int c = 0; c < static_cast<int>(scene_.constraints.size()); ++c) {
-    const ConstraintUse& use = scene_.constraints[at(c)];
-    const int first = static_cast<int>(row_lower_.size());
-    constraints_.push_back(make_constraint_rows(use, first));
-    origins_.push_back({-1, c, first, use.rows.rows, use.label});
+  closure_rows_ = rows();
+  constraints_.resize(scene_.constraints.size());
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const ConstraintUse& use = scene_.constraints[c];
+    constraints_[c].first_row = rows();
+    origins_.push_back({-1, static_cast<int>(c), rows(), use.rows.rows, use.label});
     summary_.row_groups.push_back({use.label, "constraint '" + use.label + "' (" + std::to_string(use.rows.rows) + ")",
-                                   first, use.rows.rows, false});
+                                   rows(), use.rows.rows, false});
+    row_lower_.resize(row_lower_.size() + at(use.rows.rows), 0.0);
+    row_upper_.resize(row_lower_.size(), 0.0);
+  }
+  row_.assign(row_lower_.size(), 0.0);
+}
+
+bool Assembly::read_rows() {
+  const auto count_read = [&] {
+    return std::count_if(tables_.begin(), tables_.end(), [](const SiteTable& table) { return table.read; });
+  };
+  const auto before = count_read();
+  summary_.equalities = closure_rows_;
+  summary_.inequalities = 0;
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const ConstraintUse& use = scene_.constraints[c];
+    ConstraintRows& rows = constraints_[c];
+    const int flawed = rows.bind(use.rows, table_of_, tables_);
+    if (flawed >= 0) throw std::runtime_error(missing_place(use, flawed));
     for (int r = 0; r < use.rows.rows; ++r) {
-      row_lower_.push_back(use.rows.lower[at(r)]);
-      row_upper_.push_back(use.rows.upper[at(r)]);
+      row_lower_[at(rows.first_row + r)] = use.rows.lower[at(r)];
+      row_upper_[at(rows.first_row + r)] = use.rows.upper[at(r)];
       (use.rows.lower[at(r)] == use.rows.upper[at(r)] ? summary_.equalities : summary_.inequalities) += 1;
     }
   }
-  row_.assign(row_lower_.size(), 0.0);
+  return count_read() != before;
+}
+
+std::string Assembly::missing_place(const ConstraintUse& use, int row) const {
+  for (int p = use.rows.place_begin[at(row)]; p < use.rows.place_begin[at(row) + 1]; ++p) {
+    const Place& place = use.rows.places[at(p)];
+    const SiteTable* table = find_table(place.curve, place.site);
+    if (table != nullptr && place.index >= 0 && place.index < table->count()) continue;
+    return "constraint '" + use.label + "': row " + std::to_string(row) + " reads a place that curve '" +
+           scene_.curves[at(place.curve)]->name + "' does not have";
+  }
+  return {};
+}
+
+bool Assembly::rows_stay() const noexcept {
+  for (std::size_t c = 0; c < constraints_.size(); ++c) {
+    const RowDeclaration& rows = scene_.constraints[c].rows;
+    const int first = constraints_[c].first_row;
+    if (rows.in_parts != constraints_[c].in_parts || !constraints_[c].reads_as(rows, table_of_) ||
+        !std::equal(rows.lower.begin(), rows.lower.end(), row_lower_.begin() + first) ||
+        !std::equal(rows.upper.begin(), rows.upper.end(), row_upper_.begin() + first)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 void Assembly::make_scales() {
@@ -192,61 +188,42 @@ void Assembly::make_scales() {
   }
 }
 
-void Assembly::make_patterns() {
-  hessian_pattern_ = HessianPattern();
-  jacobian_pattern_.clear();
-  std::vector<int> free_stencil;
-  const auto stencil = [&](const SiteTable& table, int place) {
-    free_stencil.clear();
-    for (int k = 0; k < table.width(); ++k) {
-      const int unknown = table.unknown[at(place * table.width() + k)];
-      free_stencil.push_back(unknown < 0 ? -1 : free_[at(unknown)]);
-    }
-  };
+void Assembly::make_lasting_patterns() {
   const auto has_second_order = [](const SiteTable& table) {
     return !table.modulus.empty() || (table.read && table.bends());
   };
-
+  lasting_pattern_ = HessianPattern();
+  jacobian_pattern_.clear();
   for (const SiteTable& table : tables_) {
     for (int i = 0; i < table.count(); ++i) {
-      stencil(table, i);
+      const int* stencil = table.free_unknown.data() + i * table.width();
       if (has_second_order(table)) {
-        hessian_pattern_.couple(blocks_, free_stencil.data() + table.hessian_first(), table.hessian_width());
+        lasting_pattern_.couple(blocks_, stencil + table.hessian_first(), table.hessian_width());
       }
       if (table.declaration->site != Site::closure) continue;
-      for (int a = 0; a < table.values(); ++a) jacobian_pattern_.add_row(free_stencil.data(), table.width());
+      for (int a = 0; a < table.values(); ++a) jacobian_pattern_.add_row(stencil, table.width());
     }
   }
-  for (const ConstraintRows& rows : constraints_) {
-    for (int r = 0; r < rows.rows(); ++r) {
-      const int* unknown = rows.unknown.data() + rows.unknown_begin[at(r)];
-      const int count = rows.unknown_begin[at(r) + 1] - rows.unknown_begin[at(r)];
-      hessian_pattern_.couple(blocks_, unknown, count);
-      jacobian_pattern_.add_row(unknown, count);
-    }
-  }
-  hessian_pattern_.finish(blocks_);
+  lasting_pattern_.finish(blocks_);
 
   closure_position_.clear();
   closure_runs_.clear();
   closure_in_run_.clear();
   int row = 0;
   for (SiteTable& table : tables_) {
-    table.hessian_position.clear();
+    table.lasting_position.clear();
     table.all_free.clear();
     const bool closure = table.declaration->site == Site::closure;
     for (int i = 0; i < table.count(); ++i) {
-      stencil(table, i);
+      const int* stencil = table.free_unknown.data() + i * table.width();
       if (has_second_order(table)) {
         const int first = table.hessian_first(), end = first + table.hessian_width();
         char free = 1;
         for (int a = first; a < end; ++a) {
           for (int b = first; b <= a; ++b) {
-            const int ua = free_stencil[at(a)];
-            const int ub = free_stencil[at(b)];
-            const bool held = ua < 0 || ub < 0;
+            const bool held = stencil[a] < 0 || stencil[b] < 0;
             if (held) free = 0;
-            table.hessian_position.push_back(held ? -1 : hessian_pattern_.position(blocks_, ua, ub));
+            table.lasting_position.push_back(held ? -1 : lasting_pattern_.position(blocks_, stencil[a], stencil[b]));
           }
         }
         table.all_free.push_back(free);
@@ -254,15 +231,39 @@ void Assembly::make_patterns() {
       if (!closure) continue;
       for (int a = 0; a < table.values(); ++a, ++row) {
         const auto first = closure_position_.size();
-        for (const int u : free_stencil) {
-          closure_position_.push_back(u < 0 ? -1 : jacobian_pattern_.position(row, u));
+        for (int k = 0; k < table.width(); ++k) {
+          closure_position_.push_back(stencil[k] < 0 ? -1 : jacobian_pattern_.position(row, stencil[k]));
         }
         note_closure_row(static_cast<int>(&table - tables_.data()), (i * table.values() + a) * table.width(),
                          closure_position_.data() + first);
       }
     }
   }
-  for (ConstraintRows& rows : constraints_) rows.locate(blocks_, hessian_pattern_, jacobian_pattern_);
+  count_closure_readers();
+  node_fraction_.resize(scene_.curves.size());
+  for (const SiteTable& table : tables_) {
+    std::vector<double>& fraction = node_fraction_[at(table.curve)];
+    const int edges = curve_of(table).view.nodes - 1;
+    for (int i = static_cast<int>(fraction.size()); i < table.count(); ++i) {
+      fraction.push_back(static_cast<double>(i) / edges);
+    }
+  }
+}
+
+void Assembly::make_patterns() {
+  row_blocks_.clear();
+  jacobian_pattern_.keep(closure_rows_);
+  for (ConstraintRows& rows : constraints_) rows.add_patterns(blocks_, row_blocks_, jacobian_pattern_);
+  hessian_pattern_.assign(blocks_, lasting_pattern_, row_blocks_, lasting_position_);
+  for (ConstraintRows& rows : constraints_) rows.locate(blocks_, hessian_pattern_);
+  for (SiteTable& table : tables_) {
+    const auto count = table.lasting_position.size();
+    table.hessian_position.resize(count);
+    for (std::size_t k = 0; k < count; ++k) {
+      const int lasting = table.lasting_position[k];
+      table.hessian_position[k] = lasting < 0 ? -1 : lasting_position_[at(lasting)];
+    }
+  }
   find_local_rows();
   make_order();
 }
@@ -290,8 +291,9 @@ bool Assembly::reads_like(const Assembly& other) const noexcept {
                     same_rows);
 }
 
-/// What `make_patterns` would make.
+/// What `make_lasting_patterns` and `make_patterns` would make.
 void Assembly::take_patterns(const Assembly& other) {
+  lasting_pattern_ = other.lasting_pattern_;
   hessian_pattern_ = other.hessian_pattern_;
   jacobian_pattern_ = other.jacobian_pattern_;
   closure_position_ = other.closure_position_;
@@ -300,9 +302,15 @@ void Assembly::take_patterns(const Assembly& other) {
   order_ = other.order_;
   border_ = other.border_;
   whole_curve_ = other.whole_curve_;
+  is_position_ = other.is_position_;
+  closure_readers_ = other.closure_readers_;
+  node_fraction_ = other.node_fraction_;
+  local_rows_found_ = other.local_rows_found_;
+  local_rows_of_constraints_ = other.local_rows_of_constraints_;
   local_rows_ = other.local_rows_;
   local_unknowns_ = other.local_unknowns_;
   for (std::size_t t = 0; t < tables_.size(); ++t) {
+    tables_[t].lasting_position = other.tables_[t].lasting_position;
     tables_[t].hessian_position = other.tables_[t].hessian_position;
     tables_[t].all_free = other.tables_[t].all_free;
   }
@@ -325,34 +333,46 @@ void Assembly::note_closure_row(int table, int first, const int* position) {
   closure_runs_.push_back({table, first, position[0], width});
 }
 
-void Assembly::find_local_rows() {
-  std::vector<int> places(at(free_count_), 0);  // closure places, and constraints' equality rows, that read an unknown
+void Assembly::count_closure_readers() {
+  closure_readers_.assign(at(free_count_), 0);
   whole_curve_.assign(at(free_count_), 0);
-  local_rows_.clear();
-  local_unknowns_.clear();
+  std::vector<int> of_table(at(free_count_), 0);
   for (const SiteTable& table : tables_) {
     if (table.declaration->site != Site::closure) continue;
-    std::vector<int> of_table(at(free_count_), 0);
     for (const int u : table.free_unknown) {
-      if (u >= 0) ++of_table[at(u)], ++places[at(u)];
+      if (u >= 0) ++of_table[at(u)], ++closure_readers_[at(u)];
     }
     constexpr int few = 2;  // edges that meet at a node
-    for (int u = 0; u < free_count_; ++u)
+    for (const int u : table.free_unknown) {
+      if (u < 0) continue;
       whole_curve_[at(u)] |= of_table[at(u)] > few && of_table[at(u)] == table.count();
+      of_table[at(u)] = 0;
+    }
   }
+  is_position_.assign(at(free_count_), 0);
+  for (const FieldEntry& entry : entries_) {
+    if (entry.block < 0 || entry.manifold != Manifold::vector) continue;
+    for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) is_position_[at(u)] = 1;
+  }
+  local_rows_found_ = false;
+}
+
+void Assembly::find_local_rows() {
+  const bool of_constraints = summary_.equalities > closure_rows_;
+  if (local_rows_found_ && !of_constraints && !local_rows_of_constraints_) return;
+  local_rows_found_ = true;
+  local_rows_of_constraints_ = of_constraints;
+  equality_readers_ = closure_readers_;
   for (const ConstraintRows& rows : constraints_) {
-    for (int r = 0; r < rows.rows(); ++r) {
+    for (int r = 0; of_constraints && r < rows.rows(); ++r) {
       if (row_lower_[at(rows.first_row + r)] != row_upper_[at(rows.first_row + r)]) continue;
       for (int k = rows.unknown_begin[at(r)]; k < rows.unknown_begin[at(r) + 1]; ++k) {
-        if (rows.unknown[at(k)] >= 0) ++places[at(rows.unknown[at(k)])];
+        if (rows.unknown[at(k)] >= 0) ++equality_readers_[at(rows.unknown[at(k)])];
       }
     }
   }
-  std::vector<char> is_position(at(free_count_), 0);
-  for (const FieldEntry& entry : entries_) {
-    if (entry.block < 0 || entry.manifold != Manifold::vector) continue;
-    for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) is_position[at(u)] = 1;
-  }
+  local_rows_.clear();
+  local_unknowns_.clear();
   int row = 0;
   for (const SiteTable& table : tables_) {
     if (table.declaration->site != Site::closure) continue;
@@ -360,7 +380,7 @@ void Assembly::find_local_rows() {
       LocalRows local{row, table.values(), static_cast<int>(local_unknowns_.size()), 0};
       for (int k = 0; k < table.width(); ++k) {
         const int u = table.free_unknown[at(i * table.width() + k)];
-        if (u < 0 || places[at(u)] != 1 || is_position[at(u)] != 0) continue;
+        if (u < 0 || equality_readers_[at(u)] != 1 || is_position_[at(u)] != 0) continue;
         local_unknowns_.push_back(u);
         ++local.locals;
       }
@@ -369,14 +389,9 @@ void Assembly::find_local_rows() {
   }
 }
 
-std::vector<double> Assembly::places_along() const {
-  std::vector<double> place(at(free_count_), 0.0);
-  // Of a curve whose rows search places along another one: (its own arc fraction, that of the other curve).
-  std::vector<std::vector<std::pair<double, double>>> seen(scene_.curves.size());
-  const auto node_fraction = [&](const ConstraintRows::Read& read) {
-    const CurveView& view = curve_of(tables_[at(read.table)]).view;
-    return static_cast<double>(read.index) / (view.nodes - 1);
-  };
+void Assembly::pair_places() {
+  paired_places_.resize(scene_.curves.size());
+  for (auto& pairs : paired_places_) pairs.clear();
   for (const ConstraintRows& rows : constraints_) {
     for (int r = 0; r < rows.rows(); ++r) {
       const int first = rows.read_begin[at(r)], end = rows.read_begin[at(r) + 1];
@@ -385,24 +400,35 @@ std::vector<double> Assembly::places_along() const {
       double mine = 0.0, other = 0.0;
       int mine_count = 0, other_count = 0;
       for (int k = first; k < end; ++k) {
-        const bool is_own = tables_[at(rows.reads[at(k)].table)].curve == own;
-        (is_own ? mine : other) += node_fraction(rows.reads[at(k)]);
-        ++(is_own ? mine_count : other_count);
+        const ConstraintRows::Read& read = rows.reads[at(k)];
+        const int curve = tables_[at(read.table)].curve;
+        (curve == own ? mine : other) += node_fraction_[at(curve)][at(read.index)];
+        ++(curve == own ? mine_count : other_count);
       }
-      if (other_count > 0) seen[at(own)].emplace_back(mine / mine_count, other / other_count);
+      if (other_count > 0) paired_places_[at(own)].emplace_back(mine / mine_count, other / other_count);
     }
   }
-  for (auto& pairs : seen) std::sort(pairs.begin(), pairs.end());
+  for (auto& pairs : paired_places_) {
+    if (!std::is_sorted(pairs.begin(), pairs.end())) std::sort(pairs.begin(), pairs.end());
+  }
+}
+
+void Assembly::place_along() {
   std::size_t index = 0;
   for (const auto& curve : scene_.curves) {
-    const auto& pairs = seen[at(curve->view.index)];
+    const auto& pairs = paired_places_[at(curve->view.index)];
     for (const FieldDeclaration& field : curve->declaration.fields) {
+      auto next = pairs.begin();
       for (int i = 0; i < field.count; ++i, ++index) {
         const FieldEntry& entry = entries_[index];
         if (entry.block < 0) continue;
         double along = entry.arc_fraction;
         if (!pairs.empty()) {
-          const auto next = std::lower_bound(pairs.begin(), pairs.end(), std::pair<double, double>{along, -infinity});
+          // The first that is not before `along`: entries come in order along their curve.
+          if (next != pairs.begin() && !((next - 1)->first < along)) {
+            next = std::lower_bound(pairs.begin(), pairs.end(), std::pair<double, double>{along, -infinity});
+          }
+          while (next != pairs.end() && next->first < along) ++next;
           if (next == pairs.begin()) {
             along += next->second - next->first;
           } else if (next == pairs.end()) {
@@ -414,34 +440,34 @@ std::vector<double> Assembly::places_along() const {
             along = before->second + t * (next->second - before->second);
           }
         }
-        for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) place[at(u)] = along;
+        for (int u = blocks_.begin[at(entry.block)]; u < blocks_.begin[at(entry.block) + 1]; ++u) key_[at(u)] = along;
       }
     }
   }
-  return place;
 }
 
 void Assembly::make_order() {
   const int n = free_count_;
   const int m = rows();
-  std::vector<double> key = places_along();
-  key.resize(at(n + m), -infinity);
+  key_.assign(at(n + m), -infinity);
+  pair_places();
+  place_along();
   border_ = 0;
   for (int u = 0; u < n; ++u) {
     if (whole_curve_[at(u)] == 0) continue;
-    key[at(u)] = infinity;
+    key_[at(u)] = infinity;
     ++border_;
   }
   const SparsityPattern pattern = jacobian_pattern_.view();
   for (int r = 0; r < m; ++r) {
+    double largest = -infinity;
     for (int k = pattern.begin[at(r)]; k < pattern.begin[at(r) + 1]; ++k) {
-      const double place = key[at(pattern.inner[at(k)])];
-      if (place < infinity) key[at(n + r)] = std::max(key[at(n + r)], place);
+      const double place = key_[at(pattern.inner[at(k)])];
+      if (place < infinity) largest = std::max(largest, place);
     }
+    key_[at(n + r)] = largest;
   }
-  order_.resize(at(n + m));
-  std::iota(order_.begin(), order_.end(), 0);
-  std::stable_sort(order_.begin(), order_.end(), [&](int a, int b) { return key[at(a)] < key[at(b)]; });
+  key_order_.sort(key_, order_);
 }
 
 }  // namespace bowstring

@@ -51,7 +51,7 @@ Status Assembly::term_hessian(Span<const double> q, int term, Span<double> value
   for (SiteTable& table : tables_) {
     if (!table.pulls) continue;
     table.total_stress = table.stress;
-    Status status = table.update_curvature(curve_q(table.curve), state_);
+    Status status = table.update_curvature(curve_q(table.curve), place_state_);
     if (!status.ok()) return named(std::move(status), "curve '" + curve_of(table).name + "'");
     table.add_hessian(1.0, values.data());
   }

@@ -61,6 +61,23 @@ struct ControlValues {
   }
 };
 
+void cubic_basis(double b0, double b1, double b2, double b3, double out[4]) noexcept {
+  out[0] = (b0 + 4.0 * b1 + b2) / 6.0;
+  out[1] = (b2 - b0) / 2.0;
+  out[2] = (b0 - 2.0 * b1 + b2) / 2.0;
+  out[3] = ((b3 - b0) + 3.0 * (b1 - b2)) / 6.0;
+}
+
+/// Of a segment whose six nodes are all there: what `ControlValues` answers away from the ends, without a choice.
+void inner_basis(const ControlValues& from, int segment, double out[4]) noexcept {
+  const auto control = [](double before, double here, double after) {
+    return here - (after - 2.0 * here + before) / 6.0;
+  };
+  const double n0 = from.node(segment - 2), n1 = from.node(segment - 1), n2 = from.node(segment);
+  const double n3 = from.node(segment + 1), n4 = from.node(segment + 2), n5 = from.node(segment + 3);
+  cubic_basis(control(n0, n1, n2), control(n1, n2, n3), control(n2, n3, n4), control(n3, n4, n5), out);
+}
+
 void power_basis(Interpolation interpolation, const ControlValues& from, int segment, double out[4]) noexcept {
   if (interpolation == Interpolation::polyline) {
     out[0] = from.node(segment);
@@ -68,20 +85,9 @@ void power_basis(Interpolation interpolation, const ControlValues& from, int seg
     out[2] = out[3] = 0.0;
     return;
   }
-  const double b0 = from.control(segment - 1), b1 = from.control(segment);
-  const double b2 = from.control(segment + 1), b3 = from.control(segment + 2);
-  out[0] = (b0 + 4.0 * b1 + b2) / 6.0;
-  out[1] = (b2 - b0) / 2.0;
-  out[2] = (b0 - 2.0 * b1 + b2) / 2.0;
-  out[3] = ((b3 - b0) + 3.0 * (b1 - b2)) / 6.0;
-}
-
-struct Cubic {
-  double value, slope, second;
-};
-
-Cubic horner(double a0, double a1, double a2, double a3, double u) noexcept {
-  return {a0 + u * (a1 + u * (a2 + u * a3)), a1 + u * (2.0 * a2 + u * 3.0 * a3), 2.0 * a2 + u * 6.0 * a3};
+  if (segment >= 2 && segment + 3 < from.nodes) return inner_basis(from, segment, out);
+  cubic_basis(from.control(segment - 1), from.control(segment), from.control(segment + 1), from.control(segment + 2),
+              out);
 }
 
 double squared_length(const double a[3]) noexcept { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
@@ -91,12 +97,12 @@ double squared_length(const double a[3]) noexcept { return a[0] * a[0] + a[1] * 
 CurvePoint SegmentPolynomial::at(double u) const noexcept {
   CurvePoint point;
   for (int k = 0; k < 3; ++k) {
-    const Cubic q = horner(position[0][k], position[1][k], position[2][k], position[3][k], u);
+    const Cubic q = cubic(position[0][k], position[1][k], position[2][k], position[3][k], u);
     point.position[k] = q.value;
     point.slope[k] = q.slope;
     point.second[k] = q.second;
   }
-  const Cubic r = horner(radius[0], radius[1], radius[2], radius[3], u);
+  const Cubic r = cubic(radius[0], radius[1], radius[2], radius[3], u);
   point.radius = r.value;
   point.radius_slope = r.slope;
   point.radius_second = r.second;

@@ -61,6 +61,14 @@ struct CurvePoint {
   double radius_second = 0.0;
 };
 
+/// Σ_m a_m u^m and its derivatives in u.
+struct Cubic {
+  double value, slope, second;
+};
+inline Cubic cubic(double a0, double a1, double a2, double a3, double u) noexcept {
+  return {a0 + u * (a1 + u * (a2 + u * a3)), a1 + u * (2.0 * a2 + u * 3.0 * a3), 2.0 * a2 + u * 6.0 * a3};
+}
+
 /// A segment in the power basis, q(u) − origin = Σ_m position[m] u^m and R(u) = Σ_m radius[m] u^m: what a
 /// search along the segment evaluates. Linear for a polyline.
 struct SegmentPolynomial {

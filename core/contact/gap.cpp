@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <vector>
 
 namespace bowstring::contact {
@@ -18,55 +19,87 @@ constexpr int samples_per_segment = 4;      // of a global scan
 
 double dot(const double a[3], const double b[3]) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// φ at one σ with its derivatives, in terms of d = x − q.
-struct GapValue {
-  double gap = 0.0, slope = 0.0, second = 0.0;  // φ, φ_σ, φ_σσ
-  double distance = 0.0, clearance = 0.0;
-  double resolution = 0.0;  // change of σ that rounding of d hides
-};
-
-GapValue gap_value(const CurvePoint& q, GapShape shape) noexcept {
-  // `position` is q − x = −d, and so r_σ = 2 (q − x)·q'.
-  const double r = dot(q.position, q.position);
-  const double speed2 = dot(q.slope, q.slope);
-  const double r1 = 2.0 * dot(q.position, q.slope);
-  const double r2 = 2.0 * (speed2 + dot(q.position, q.second));
-  const double c1 = q.radius_slope, c2 = q.radius_second;
-
-  GapValue out;
-  out.distance = std::sqrt(r);
-  out.clearance = q.radius - shape.wire_radius;
-  const GapFormValue f = gap_form(shape.form, r, out.clearance);
-  out.gap = f.value;
-  out.slope = f.r * r1 + f.c * c1;
-  out.second = f.rr * r1 * r1 + 2.0 * f.rc * r1 * c1 + f.cc * c1 * c1 + f.r * r2 + f.c * c2;
-  out.resolution = 4.0 * epsilon * (1.0 + (speed2 > 0.0 ? std::sqrt(r / speed2) : 0.0));
-  return out;
+inline GapFormValue form_value(GapForm form, double r, double c) noexcept {
+  if (form == GapForm::squared) {
+    if (!(c > 0.0)) return {nan_value, nan_value, nan_value, nan_value, nan_value, nan_value};
+    const double by_c = 1.0 / c;
+    return {0.5 * (r * by_c - c),  0.5 * by_c, -0.5 * (r * by_c * by_c + 1.0), 0.0, -0.5 * by_c * by_c,
+            r * by_c * by_c * by_c};
+  }
+  const double delta = form == GapForm::smooth_distance ? gap_smoothing : 0.0;
+  const double s = std::sqrt(r + delta * delta);
+  if (s < singular_distance) return {s - c, 0.0, -1.0, 0.0, 0.0, 0.0};
+  return {s - delta - c, 0.5 / s, -1.0, -0.25 / (s * s * s), 0.0, 0.0};
 }
 
+/// φ_σσ, from F's derivatives and those of r and c.
+double second_derivative(const GapFormValue& f, double r1, double r2, double c1, double c2) noexcept {
+  return f.rr * r1 * r1 + 2.0 * f.rc * r1 * c1 + f.cc * c1 * c1 + f.r * r2 + f.c * c2;
+}
+
+/// φ_σ and φ_σσ at one σ.
+struct GapSlope {
+  double slope = 0.0, second = 0.0;
+  double r = 0.0, speed2 = 0.0;  // |x − q|² and |q'|²
+
+  /// Whether a change of σ is so small that rounding of x − q hides it.
+  bool hides(double change) const noexcept {
+    // (1 + √a)² ≤ 2 (1 + a): most changes are larger beyond doubt, which takes no roots.
+    if (change * change * speed2 > 33.0 * epsilon * epsilon * (speed2 + r)) return false;
+    return change <= 4.0 * epsilon * (1.0 + (speed2 > 0.0 ? std::sqrt(r / speed2) : 0.0));
+  }
+};
+
 /// The search for a minimum of φ along one segment; u is the segment's own coordinate.
+template <int dimension>
 class SegmentSearch {
  public:
   SegmentSearch(const Centerline& curve, int segment, const double* x, GapShape shape) noexcept
       : polynomial_(segment_polynomial(curve, segment, x)), shape_(shape) {}
 
-  GapValue at(double u) const noexcept { return gap_value(polynomial_.at(u), shape_); }
+  GapSlope slope(double u) const noexcept {
+    // `q` is q − x, and so r_σ = 2 (q − x)·q'.
+    GapSlope out;
+    double along = 0.0, bent = 0.0;
+    for (int k = 0; k < dimension; ++k) {
+      const Cubic q = coordinate(k, u);
+      out.r += q.value * q.value;
+      out.speed2 += q.slope * q.slope;
+      along += q.value * q.slope;
+      bent += q.value * q.second;
+    }
+    const Cubic radius = this->radius(u);
+    const double r1 = 2.0 * along, r2 = 2.0 * (out.speed2 + bent);
+    const GapFormValue f = form_value(shape_.form, out.r, radius.value - shape_.wire_radius);
+    out.slope = f.r * r1 + f.c * radius.slope;
+    out.second = second_derivative(f, r1, r2, radius.slope, radius.second);
+    return out;
+  }
 
-  /// Walks from u toward `limit` (direction ±1) down φ. True: u is the first minimum. False: φ falls all the
-  /// way, and u is `limit`. Steps are Newton's where φ is convex, and at most half a segment.
-  bool descend(double& u, double limit, int direction) const noexcept {
-    GapValue here = at(u);
+  ClosestPoint point(CurveCoordinate at, Location location) const noexcept {
+    double r = 0.0;
+    for (int k = 0; k < dimension; ++k) {
+      const double q = coordinate(k, at.u).value;
+      r += q * q;
+    }
+    const double clearance = radius(at.u).value - shape_.wire_radius;
+    return {at, location, form_value(shape_.form, r, clearance).value, std::sqrt(r), clearance};
+  }
+
+  /// Walks from u, where φ's slope is `here`, toward `limit` (direction ±1) down φ. True: u is the first minimum.
+  /// False: φ falls all the way, and u is `limit`. Steps are Newton's where φ is convex, and at most half a segment.
+  bool descend(double& u, GapSlope here, double limit, int direction) const noexcept {
     for (int i = 0; i < max_steps; ++i) {
       const double ahead = direction * here.slope;
       if (!(ahead < 0.0 || (ahead == 0.0 && here.second < 0.0))) return true;
       const double room = std::abs(limit - u);
       if (room == 0.0) return false;
       double step = here.second > 0.0 ? -ahead / here.second : longest_step;
-      if (step <= here.resolution) return true;
+      if (here.hides(step)) return true;
       step = std::min(step, longest_step);
 
       const double next = step < room ? u + direction * step : limit;
-      const GapValue there = at(next);
+      const GapSlope there = slope(next);
       if (direction * there.slope >= 0.0) {
         u = between(u, next, there);
         return true;
@@ -79,33 +112,40 @@ class SegmentSearch {
 
   /// The exact minimum of a φ that is convex on [low, high].
   double convex_minimum(double low, double high) const noexcept {
-    if (!(at(low).slope < 0.0)) return low;
-    const GapValue last = at(high);
+    if (!(slope(low).slope < 0.0)) return low;
+    const GapSlope last = slope(high);
     if (!(last.slope > 0.0)) return high;
     return between(low, high, last);
   }
 
  private:
+  Cubic coordinate(int k, double u) const noexcept {
+    const auto& p = polynomial_.position;
+    return cubic(p[0][k], p[1][k], p[2][k], p[3][k], u);
+  }
+  Cubic radius(double u) const noexcept {
+    return cubic(polynomial_.radius[0], polynomial_.radius[1], polynomial_.radius[2], polynomial_.radius[3], u);
+  }
+
   /// The zero of φ_σ between `behind`, where φ falls toward `ahead`, and `ahead`, where it rises: Newton's
   /// steps, by bisection where they leave the bracket or do not shrink.
-  double between(double behind, double ahead, GapValue value_ahead) const noexcept {
+  double between(double behind, double ahead, GapSlope here) const noexcept {
     const double sign = ahead >= behind ? 1.0 : -1.0;
     double u = ahead;
-    GapValue here = value_ahead;
     double previous = std::abs(ahead - behind);
     for (int i = 0; i < max_steps; ++i) {
-      const double slope = sign * here.slope;
-      if (slope == 0.0) return u;
-      (slope < 0.0 ? behind : ahead) = u;
+      const double slope_here = sign * here.slope;
+      if (slope_here == 0.0) return u;
+      (slope_here < 0.0 ? behind : ahead) = u;
       double next = here.second > 0.0 ? u - here.slope / here.second : nan_value;
       const double low = std::min(behind, ahead), high = std::max(behind, ahead);
       const bool inside = next >= low && next <= high;
-      if (inside && std::abs(next - u) <= here.resolution) return next;
-      if (high - low <= here.resolution) return u;
+      if (inside && here.hides(std::abs(next - u))) return next;
+      if (here.hides(high - low)) return u;
       if (!inside || std::abs(next - u) > 0.5 * previous) next = 0.5 * (low + high);
       previous = std::abs(next - u);
       u = next;
-      here = at(u);
+      here = slope(u);
     }
     return u;
   }
@@ -113,6 +153,12 @@ class SegmentSearch {
   SegmentPolynomial polynomial_;
   GapShape shape_;
 };
+
+/// Calls use(std::integral_constant<int, dimension>).
+template <class Use>
+auto with_dimension(int dimension, const Use& use) noexcept {
+  return dimension == 2 ? use(std::integral_constant<int, 2>()) : use(std::integral_constant<int, 3>());
+}
 
 /// The window in terms of the segments that it touches. A NaN bound is no bound.
 struct Stretch {
@@ -139,26 +185,24 @@ bool at_curve_end(CurveCoordinate at, int nodes) noexcept {
   return (at.segment == 0 && at.u == 0.0) || (at.segment == nodes - 2 && at.u == 1.0);
 }
 
-ClosestPoint closest_point(const SegmentSearch& search, CurveCoordinate at, Location location) noexcept {
-  const GapValue value = search.at(at.u);
-  return {at, location, value.gap, value.distance, value.clearance};
-}
-
+template <int dimension>
 ClosestPoint closest_on_spline(const Centerline& curve, const double* x, GapShape shape, const Stretch& stretch,
                                double start) noexcept {
   CurveCoordinate at = stretch.clip(start);
-  SegmentSearch search(curve, at.segment, x, shape);
-  const int direction = search.at(at.u).slope > 0.0 ? -1 : 1;
+  SegmentSearch<dimension> search(curve, at.segment, x, shape);
+  GapSlope here = search.slope(at.u);
+  const int direction = here.slope > 0.0 ? -1 : 1;
   for (;;) {
     const double limit = direction > 0 ? stretch.upper(at.segment) : stretch.lower(at.segment);
-    if (search.descend(at.u, limit, direction)) return closest_point(search, at, Location::interior);
+    if (search.descend(at.u, here, limit, direction)) return search.point(at, Location::interior);
     if (at.segment == (direction > 0 ? stretch.last : stretch.first)) break;
     at.segment += direction;
     at.u = direction > 0 ? 0.0 : 1.0;
-    search = SegmentSearch(curve, at.segment, x, shape);
+    search = SegmentSearch<dimension>(curve, at.segment, x, shape);
+    here = search.slope(at.u);
   }
   const bool end = at_curve_end(at, curve.nodes);
-  return closest_point(search, at, end ? Location::curve_end : Location::window_edge);
+  return search.point(at, end ? Location::curve_end : Location::window_edge);
 }
 
 Location location_on_polyline(CurveCoordinate at, const Stretch& stretch, int nodes) noexcept {
@@ -169,13 +213,14 @@ Location location_on_polyline(CurveCoordinate at, const Stretch& stretch, int no
   return at.u == 0.0 || at.u == 1.0 ? Location::vertex : Location::interior;
 }
 
+template <int dimension>
 ClosestPoint closest_on_polyline(const Centerline& curve, const double* x, GapShape shape,
                                  const Stretch& stretch) noexcept {
   ClosestPoint best;
   for (int segment = stretch.first; segment <= stretch.last; ++segment) {
-    const SegmentSearch search(curve, segment, x, shape);
+    const SegmentSearch<dimension> search(curve, segment, x, shape);
     const double u = search.convex_minimum(stretch.lower(segment), stretch.upper(segment));
-    const ClosestPoint here = closest_point(search, {segment, u}, Location::interior);
+    const ClosestPoint here = search.point({segment, u}, Location::interior);
     if (segment == stretch.first || !(here.gap >= best.gap)) best = here;
     if (std::isnan(best.gap)) return best;
   }
@@ -203,10 +248,12 @@ GapPartials gap_partials(const Centerline& curve, const WirePoint& point, GapFor
     p.slope[k] = q.slope[k];
     if (point.nodes == 2 && k < curve.dimension) p.chord[k] = point.points[curve.dimension + k] - point.points[k];
   }
-  p.f = gap_form(form, dot(p.d, p.d), q.radius - shape.wire_radius);
+  p.f = form_value(form, dot(p.d, p.d), q.radius - shape.wire_radius);
   p.r_sigma = -2.0 * dot(p.d, p.slope);
   p.c_sigma = q.radius_slope;
-  p.sigma_sigma = gap_value(q, shape).second;
+  const double r_sigma_sigma = 2.0 * (dot(p.slope, p.slope) + dot(q.position, q.second));
+  p.sigma_sigma =
+      second_derivative(p.f, 2.0 * dot(q.position, q.slope), r_sigma_sigma, q.radius_slope, q.radius_second);
   if (point.nodes == 1) return p;
   const GapFormValue& f = p.f;
   p.r_t = 2.0 * dot(p.d, p.chord);
@@ -333,18 +380,7 @@ class MonotoneBinding {
 
 }  // namespace
 
-GapFormValue gap_form(GapForm form, double r, double c) noexcept {
-  if (form == GapForm::squared) {
-    if (!(c > 0.0)) return {nan_value, nan_value, nan_value, nan_value, nan_value, nan_value};
-    const double by_c = 1.0 / c;
-    return {0.5 * (r * by_c - c),  0.5 * by_c, -0.5 * (r * by_c * by_c + 1.0), 0.0, -0.5 * by_c * by_c,
-            r * by_c * by_c * by_c};
-  }
-  const double delta = form == GapForm::smooth_distance ? gap_smoothing : 0.0;
-  const double s = std::sqrt(r + delta * delta);
-  if (s < singular_distance) return {s - c, 0.0, -1.0, 0.0, 0.0, 0.0};
-  return {s - delta - c, 0.5 / s, -1.0, -0.25 / (s * s * s), 0.0, 0.0};
-}
+GapFormValue gap_form(GapForm form, double r, double c) noexcept { return form_value(form, r, c); }
 
 Window whole(const Centerline& curve) noexcept { return {0.0, curve.nodes - 1.0}; }
 
@@ -363,8 +399,10 @@ NodeRange window_nodes(Interpolation interpolation, Window window, int nodes) no
 
 ClosestPoint closest(const Centerline& curve, const double* x, GapShape shape, Window window, double start) noexcept {
   const Stretch stretch(window, curve.nodes);
-  return curve.interpolation == Interpolation::spline ? closest_on_spline(curve, x, shape, stretch, start)
-                                                      : closest_on_polyline(curve, x, shape, stretch);
+  return with_dimension(curve.dimension, [&](auto dimension) {
+    return curve.interpolation == Interpolation::spline ? closest_on_spline<dimension>(curve, x, shape, stretch, start)
+                                                        : closest_on_polyline<dimension>(curve, x, shape, stretch);
+  });
 }
 
 ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape shape) noexcept {
@@ -381,10 +419,10 @@ ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape
     if (!(here.gap >= best.gap)) best = here;
   };
   for (int segment = 0; segment < curve.segments(); ++segment) {
-    const SegmentSearch search(curve, segment, x, shape);
+    const SegmentSearch<3> search(curve, segment, x, shape);  // a plane's third coordinate is 0
     const int samples = segment == curve.segments() - 1 ? samples_per_segment + 1 : samples_per_segment;
     for (int k = 0; k < samples; ++k) {
-      const double here = search.at(k * spacing).gap;
+      const double here = search.point({segment, k * spacing}, Location::interior).gap;
       if (last < before && last <= here) refine(sigma);
       before = last;
       last = here;
@@ -396,7 +434,7 @@ ClosestPoint globally_closest(const Centerline& curve, const double* x, GapShape
 }
 
 ClosestPoint gap_at(const Centerline& curve, const double* x, GapShape shape, CurveCoordinate at) noexcept {
-  return closest_point(SegmentSearch(curve, at.segment, x, shape), at, Location::vertex);
+  return SegmentSearch<3>(curve, at.segment, x, shape).point(at, Location::vertex);  // a plane's third coordinate is 0
 }
 
 void WirePoint::position(int dimension, double* x) const noexcept {

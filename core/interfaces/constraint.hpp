@@ -44,6 +44,9 @@ class PlaceTables {
  public:
   virtual ~PlaceTables() = default;
   virtual const double* table(int curve, Site site) const noexcept = 0;
+  /// The number of that state, as in RowEvaluation::state: `accept` and `travel` come after an evaluation at the same
+  /// places, whose results may serve again. 0: unknown.
+  virtual std::uint64_t state() const noexcept { return 0; }
 };
 
 /// Which of its places a row depends on at one state: its first `lead` ones, and `count` ones from its place `first`

@@ -106,6 +106,28 @@ TEST_CASE("evaluate, lagrangian_hessian, retract, values and accept allocate not
   }
 }
 
+TEST_CASE("an epoch whose rows read as many places as some earlier one's allocates nothing") {
+  for (const SmallScene& scene : scenes()) {
+    CAPTURE(scene.text());
+    const auto session = narrow_session(scene);
+    Assembly& assembly = *session->assembly;
+    const std::vector<double> q[] = {session->scene->start_coordinates(), slid(*session, 1.4)};
+    bool good = true;
+    const auto round = [&](const std::vector<double>& state) {
+      good = good && assembly.accept(state).ok() && assembly.new_epoch().ok();
+    };
+    std::vector<int> order[2];
+    for (std::size_t k = 0; k < 4; ++k) {
+      round(q[k % 2]);
+      order[k % 2].assign(assembly.order().begin(), assembly.order().end());
+    }
+    REQUIRE(good);
+    REQUIRE(order[0] != order[1]);
+    CHECK(allocations_of([&] { round(q[0]), round(q[1]); }) == 0);
+    CHECK(good);
+  }
+}
+
 TEST_CASE("a refused trial point allocates nothing") {
   const auto session = session_of(SmallScene{});
   Assembly& assembly = *session->assembly;

@@ -75,6 +75,55 @@ TEST_CASE("a Hessian pattern holds exactly the coupled pairs of blocks, and find
   }
 }
 
+TEST_CASE(
+    "a Hessian pattern of lasting couplings and rows is that of all couplings, and says where the lasting ones are") {
+  std::mt19937 random(43);
+  HessianPattern merged;
+  std::vector<int> position;
+  for (int repetition = 0; repetition < 20; ++repetition) {
+    const BlockLayout layout = random_layout(12 + repetition % 5, random);
+    const int n = layout.begin.back();
+    HessianPattern lasting, all;
+    for (int k = 0; k < 5; ++k) {
+      const std::vector<int> stencil = random_stencil(n, random);
+      lasting.couple(layout, stencil.data(), static_cast<int>(stencil.size()));
+      all.couple(layout, stencil.data(), static_cast<int>(stencil.size()));
+    }
+    lasting.finish(layout);
+    RowBlocks rows;
+    for (int r = 0; r < 6; ++r) {
+      const std::vector<int> stencil = random_stencil(n, random);
+      all.couple(layout, stencil.data(), static_cast<int>(stencil.size()));
+      std::vector<int> blocks;
+      for (const int u : stencil) {
+        if (u >= 0) blocks.push_back(layout.block_of_unknown[at(u)]);
+      }
+      std::sort(blocks.begin(), blocks.end());
+      blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+      rows.add_row(blocks.data(), static_cast<int>(blocks.size()));
+    }
+    all.finish(layout);
+    merged.assign(layout, lasting, rows, position);
+
+    const SparsityPattern expected = all.view(), found = merged.view(), part = lasting.view();
+    REQUIRE(expected.entries() > part.entries());
+    CHECK(std::equal(expected.begin.begin(), expected.begin.end(), found.begin.begin(), found.begin.end()));
+    CHECK(std::equal(expected.inner.begin(), expected.inner.end(), found.inner.begin(), found.inner.end()));
+    REQUIRE(static_cast<int>(position.size()) == part.entries());
+    for (int j = 0; j < n; ++j) {
+      for (int k = part.begin[at(j)]; k < part.begin[at(j) + 1]; ++k) {
+        CHECK(position[at(k)] == merged.position(layout, part.inner[at(k)], j));
+      }
+    }
+    for (std::size_t p = 0; p < merged.pairs().size(); ++p) {
+      const HessianPattern::Pair& pair = merged.pairs()[p];
+      for (const int guess : {-1, static_cast<int>(p), static_cast<int>(p) + 1, 1 << 30}) {
+        CHECK(merged.find_pair(pair.row, pair.column, guess) == static_cast<int>(p));
+      }
+    }
+  }
+}
+
 TEST_CASE("a Jacobian pattern holds each row's unknowns once, in increasing order, and finds them") {
   std::mt19937 random(42);
   JacobianPattern pattern;
@@ -99,6 +148,16 @@ TEST_CASE("a Jacobian pattern holds each row's unknowns once, in increasing orde
       CHECK(pattern.position(r, row[k]) == view.begin[at(r)] + static_cast<int>(k));
     }
   }
+  const int kept = pattern.view().begin[3];
+  pattern.keep(3);
+  CHECK(pattern.rows() == 3);
+  CHECK(pattern.view().entries() == kept);
+  CHECK(pattern.add_run(2, 3) == kept);
+  CHECK(pattern.add_run(9, 1) == kept + 3);
+  pattern.end_row();
+  CHECK(pattern.rows() == 4);
+  CHECK(pattern.position(3, 4) == kept + 2);
+  CHECK(pattern.position(3, 9) == kept + 3);
   pattern.clear();
   CHECK(pattern.view().entries() == 0);
 }
@@ -128,23 +187,49 @@ TEST_CASE("the Hessian's pattern has room for the products of what one contact r
   }
 }
 
+namespace {
+
+/// Whether the order holds every number once, those that read whole curves last, and a row after the other unknowns
+/// that it reads.
+void check_order(const Assembly& assembly) {
+  const int n = assembly.unknowns(), numbers = n + assembly.rows();
+  const Span<const int> order = assembly.order();
+  REQUIRE(static_cast<int>(order.size()) == numbers);
+  std::vector<int> place(order.size(), -1);
+  for (std::size_t k = 0; k < order.size(); ++k) place[at(order[k])] = static_cast<int>(k);
+  for (const int p : place) CHECK(p >= 0);
+  const int bordered = numbers - assembly.border();
+  for (int k = bordered; k < numbers; ++k) CHECK(order[at(k)] < n);
+  const SparsityPattern rows = assembly.jacobian_pattern();
+  int followed = 0;
+  for (int r = 0; r < assembly.rows(); ++r) {
+    for (int k = rows.begin[at(r)]; k < rows.begin[at(r) + 1]; ++k) {
+      const int unknown = place[at(rows.inner[at(k)])];
+      if (unknown >= bordered) continue;
+      CHECK(unknown < place[at(n + r)]);
+      ++followed;
+    }
+  }
+  CHECK(followed > 0);
+}
+
+}  // namespace
+
 TEST_CASE("the order along the curves is a permutation in which a row follows the unknowns that it reads") {
   SmallScene scene;
   scene.dimension = 3;
   const auto session = session_of(scene);
-  const Assembly& assembly = *session->assembly;
-  const int n = assembly.unknowns();
-  const Span<const int> order = assembly.order();
-  REQUIRE(static_cast<int>(order.size()) == n + assembly.rows());
-  std::vector<int> place(order.size(), -1);
-  for (std::size_t k = 0; k < order.size(); ++k) place[at(order[k])] = static_cast<int>(k);
-  for (const int p : place) CHECK(p >= 0);
-  const SparsityPattern rows = assembly.jacobian_pattern();
-  for (int r = 0; r < assembly.rows(); ++r) {
-    for (int k = rows.begin[at(r)]; k < rows.begin[at(r) + 1]; ++k) {
-      CHECK(place[at(rows.inner[at(k)])] < place[at(n + r)]);
-    }
-  }
+  CHECK(session->assembly->border() == 1);  // the wire's length
+  check_order(*session->assembly);
+
+  const auto narrow = narrow_session(scene);
+  const Span<const int> order = narrow->assembly->order();
+  const std::vector<int> before(order.begin(), order.end());
+  REQUIRE(narrow->assembly->accept(slid(*narrow, 1.4)).ok());
+  REQUIRE(narrow->assembly->new_epoch().ok());
+  const Span<const int> after = narrow->assembly->order();
+  CHECK_FALSE(std::equal(before.begin(), before.end(), after.begin(), after.end()));
+  check_order(*narrow->assembly);
 }
 
 }  // namespace bowstring::testing

@@ -103,6 +103,16 @@ std::unique_ptr<Session> session_of_file(const std::string& name, const std::vec
   return prepared(request);
 }
 
+std::unique_ptr<Session> narrow_session(SmallScene scene) {
+  scene.geometry = scene.dimension == 2
+                       ? R"({ type = "sinusoid", chord = "40 mm", amplitude = "4 mm", periods = 1, nodes = 31 })"
+                       : R"({ type = "helix", chord = "40 mm", radius = "6 mm", turns = 0.6, nodes = 31 })";
+  scene.wire_nodes = 21;
+  std::string text = scene.text();
+  text.replace(text.find("window = 20"), 11, "window = 1");
+  return session_of_text(text);
+}
+
 std::vector<double> random_numbers(int count, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -137,6 +147,19 @@ std::vector<double> moved_start(const Session& session, double amplitude, unsign
   const std::vector<double> start = session.scene->start_coordinates();
   std::vector<double> q(start.size());
   assembly.retract(start, delta, q);
+  return q;
+}
+
+std::vector<double> slid(const Session& session, double share) {
+  std::vector<double> q = session.scene->start_coordinates();
+  const Curve& wire = *session.scene->find("wire");
+  const int d = session.scene->dimension;
+  for (int i = 2; i + 2 < wire.view.nodes; ++i) {
+    for (int k = 0; k < d; ++k) {
+      const double* p = wire.start.data() + i * d + k;
+      q[at(wire.coordinate_begin + i * d + k)] += share * (p[d] - p[0]);
+    }
+  }
   return q;
 }
 

@@ -44,6 +44,9 @@ std::string refusal_of(const std::string& text);
 /// The same for a file of the project's `scenes` folder.
 std::unique_ptr<Session> session_of_file(const std::string& name, const std::vector<Override>& overrides = {});
 
+/// The same with more nodes, and with rows that cover one segment on each side of their closest point: they leave it.
+std::unique_ptr<Session> narrow_session(SmallScene scene);
+
 std::vector<double> random_numbers(int count, unsigned seed);
 double largest(const std::vector<double>& numbers);
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b);
@@ -51,5 +54,8 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 /// A state: q of the start moved by tangent numbers in ±amplitude: mm on positions, tenths of a radian per mm on
 /// rotations, a tenth of a mm per mm on lengths.
 std::vector<double> moved_start(const Session& session, double amplitude, unsigned seed);
+
+/// The start with the wire's inner nodes moved along by a share of its edges.
+std::vector<double> slid(const Session& session, double share);
 
 }  // namespace bowstring::testing
