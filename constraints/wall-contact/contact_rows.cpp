@@ -19,7 +19,7 @@ RowPoint locate(const Row& row, const Wall& wall, const double* wire, contact::W
   const int dimension = wall.centerline.dimension;
   point.wire.nodes = row.nodes;
   point.wire.points = wire + row.node * dimension;
-  point.wire.t = row.t;
+  point.wire.t = row.extremal && row.midway ? 0.5 : row.t;
   for (int k = 0; k < 2; ++k) point.wire.radius[k] = sign(wall) * row.radius[k];
   if (row.extremal && !row.midway) {
     const contact::ChordExtremum extremum =
