@@ -39,7 +39,7 @@ void KktSystem::analyse(const Problem& problem, Span<const double> jacobian, Spa
   number_slots(problem);
   shape_matrix();
   list_entries();
-  right_.assign(at(slots_), 0.0);
+  right_.assign(at(slots_ + ProfileMatrix::padding), 0.0);
   border_right_.assign(at(borders_), 0.0);
   work_a_.resize(at(n_));
   work_b_.resize(at(m_));
@@ -443,6 +443,7 @@ void KktSystem::factor_border() {
   schur_negative_ = 0;
   if (borders_ == 0) return;
   border_solved_.assign(border_values_.begin(), border_values_.begin() + borders_ * slots_);
+  border_solved_.resize(border_solved_.size() + ProfileMatrix::padding, 0.0);
   for (int k = 0; k < borders_; ++k) matrix_.solve(border_solved_.data() + k * slots_);
   Eigen::MatrixXd schur(borders_, borders_);
   const double* corner = border_values_.data() + borders_ * slots_;

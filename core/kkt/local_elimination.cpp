@@ -12,7 +12,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double felt = 1e-3;  // of the steepest local unknown: less at the start is no way to satisfy a row
 constexpr double lost = 1e-6;  // the same, later
-constexpr int most_retained = 24;
+constexpr int most_retained = 24, most_candidates = 8, most_reads = 16;
 
 }  // namespace
 
@@ -58,151 +58,170 @@ void LocalElimination::analyse(const Problem& problem, Span<const double> jacobi
 
 bool LocalElimination::choose(const Problem& problem, const LocalRows& rows, Span<const double> jacobian) {
   const SparsityPattern pattern = problem.jacobian_pattern();
-  const Span<const int> candidates{problem.local_unknowns().data() + rows.first_local, at(rows.locals)};
-  // Columns of the candidates, made orthogonal to what has been chosen: the longest one is next.
-  std::vector<double> column(at(rows.locals * rows.rows), 0.0);
-  std::vector<int> reads;
+  const int* candidates = problem.local_unknowns().data() + rows.first_local;
+  if (rows.locals > most_candidates) return false;
+  const auto candidate = [&](int unknown) {
+    return static_cast<int>(std::find(candidates, candidates + rows.locals, unknown) - candidates);
+  };
+  // Columns of the candidates, made orthogonal to what has been chosen: the one of which most is left is next, since
+  // angles and lengths have other units.
+  double column[most_candidates][most_rows] = {}, whole[most_candidates] = {};
+  int read[most_reads] = {}, reads = 0;
   for (int i = 0; i < rows.rows; ++i) {
     const int row = rows.first_row + i;
     for (int k = pattern.begin[at(row)]; k < pattern.begin[at(row) + 1]; ++k) {
       const int unknown = pattern.inner[at(k)];
-      const auto found = std::find(candidates.begin(), candidates.end(), unknown);
-      if (found != candidates.end()) {
-        column[at(static_cast<int>(found - candidates.begin()) * rows.rows + i)] = jacobian[at(k)];
-      }
-      if (std::find(reads.begin(), reads.end(), unknown) == reads.end()) reads.push_back(unknown);
+      const int c = candidate(unknown);
+      if (c < rows.locals) column[c][i] = jacobian[at(k)];
+      if (std::find(read, read + reads, unknown) != read + reads) continue;
+      if (reads == most_reads) return false;
+      read[reads++] = unknown;
     }
   }
-  // Angles and lengths have other units: a column counts by what is left of its own length.
-  std::vector<double> whole(at(rows.locals), 0.0);
-  const auto squared = [&](int c) {
+  const auto dot = [&](int c, int d) {
     double sum = 0.0;
-    for (int i = 0; i < rows.rows; ++i) sum += column[at(c * rows.rows + i)] * column[at(c * rows.rows + i)];
+    for (int i = 0; i < rows.rows; ++i) sum += column[c][i] * column[d][i];
     return sum;
   };
   double steepest = 0.0;
-  for (int c = 0; c < rows.locals; ++c) steepest = std::max(steepest, whole[at(c)] = squared(c));
-  std::vector<int> chosen;
-  while (static_cast<int>(chosen.size()) < std::min(rows.rows, rows.locals)) {
+  for (int c = 0; c < rows.locals; ++c) steepest = std::max(steepest, whole[c] = dot(c, c));
+  bool chosen[most_candidates] = {};
+  int locals = 0;
+  for (; locals < std::min(rows.rows, rows.locals); ++locals) {
     int best = -1;
     double best_share = felt * felt;
     for (int c = 0; c < rows.locals; ++c) {
-      if (whole[at(c)] <= felt * felt * felt * felt * steepest) continue;
-      const double share = squared(c) / whole[at(c)];
+      if (chosen[c] || whole[c] <= felt * felt * felt * felt * steepest) continue;
+      const double share = dot(c, c) / whole[c];
       if (share > best_share) best = c, best_share = share;
     }
     if (best < 0) break;
-    chosen.push_back(best);
-    const double length = squared(best);
+    chosen[best] = true;
     for (int c = 0; c < rows.locals; ++c) {
-      if (c == best) continue;
-      double along = 0.0;
-      for (int i = 0; i < rows.rows; ++i) along += column[at(c * rows.rows + i)] * column[at(best * rows.rows + i)];
-      for (int i = 0; i < rows.rows; ++i) {
-        column[at(c * rows.rows + i)] -= along / length * column[at(best * rows.rows + i)];
-      }
+      if (chosen[c]) continue;
+      const double along = dot(c, best) / dot(best, best);
+      for (int i = 0; i < rows.rows; ++i) column[c][i] -= along * column[best][i];
     }
-    for (int i = 0; i < rows.rows; ++i) column[at(best * rows.rows + i)] = 0.0;
   }
-  if (chosen.empty()) return false;
-  std::sort(chosen.begin(), chosen.end());
+  if (locals == 0) return false;
 
   LocalBlock block;
   block.first_row = rows.first_row;
   block.rows = rows.rows;
   block.first_local = static_cast<int>(local_.size());
-  block.locals = static_cast<int>(chosen.size());
+  block.locals = locals;
   block.first_retained = static_cast<int>(retained_.size());
-  std::vector<int> locals;
-  for (const int c : chosen) locals.push_back(candidates[at(c)]);
-  std::sort(reads.begin(), reads.end());
-  std::vector<int> rest;
-  for (const int u : reads) {
-    if (std::find(locals.begin(), locals.end(), u) == locals.end()) rest.push_back(u);
-  }
-  if (static_cast<int>(rest.size()) > most_retained) return false;
-  block.retained = static_cast<int>(rest.size());
+  block.retained = reads - locals;
   const int index = static_cast<int>(blocks_.size());
-  for (int k = 0; k < block.locals; ++k) {
-    block_of_unknown_[at(locals[at(k)])] = index;
-    place_in_block_[at(locals[at(k)])] = k;
+  for (int c = 0; c < rows.locals; ++c) {
+    if (!chosen[c]) continue;
+    block_of_unknown_[at(candidates[c])] = index;
+    place_in_block_[at(candidates[c])] = static_cast<int>(local_.size()) - block.first_local;
+    local_.push_back(candidates[c]);
   }
+  std::sort(read, read + reads);
+  for (int k = 0; k < reads; ++k) {
+    if (block_of_unknown_[at(read[k])] != index) retained_.push_back(read[k]);
+  }
+  const int* rest = retained_.data() + block.first_retained;
   for (int i = 0; i < rows.rows; ++i) {
     const int row = rows.first_row + i;
     block_of_row_[at(row)] = index;
     jacobian_begin_.push_back(pattern.begin[at(row)]);
     for (int k = pattern.begin[at(row)]; k < pattern.begin[at(row) + 1]; ++k) {
       const int unknown = pattern.inner[at(k)];
-      const auto found = std::find(locals.begin(), locals.end(), unknown);
-      entry_.push_back(found != locals.end()
-                           ? -1 - static_cast<int>(found - locals.begin())
-                           : static_cast<int>(std::lower_bound(rest.begin(), rest.end(), unknown) - rest.begin()));
+      entry_.push_back(block_of_unknown_[at(unknown)] == index
+                           ? -1 - place_in_block_[at(unknown)]
+                           : static_cast<int>(std::lower_bound(rest, rest + block.retained, unknown) - rest));
     }
     entry_begin_.push_back(static_cast<int>(entry_.size()));
   }
-  local_.insert(local_.end(), locals.begin(), locals.end());
-  retained_.insert(retained_.end(), rest.begin(), rest.end());
   blocks_.push_back(block);
   return true;
 }
+
+namespace {
+
+/// Jacobian rows of one place: of its local unknowns, of the retained ones, and Qᵀ.
+struct Rows {
+  static constexpr int most = LocalElimination::most_rows;
+  double local[most][most] = {}, rest[most][most_retained] = {}, q[most][most] = {};
+};
+
+/// Householder's reflections of the first `locals` columns, applied to everything and gathered in Qᵀ. With sizes known
+/// to the compiler the loops unroll.
+template <int fixed_rows, int fixed_locals>
+bool triangularise(Rows& m, int rows, int locals, int retained) noexcept {
+  const int d = fixed_rows > 0 ? fixed_rows : rows, k = fixed_rows > 0 ? fixed_locals : locals;
+  for (int c = 0; c < k; ++c) {
+    double squared = 0.0, above = 0.0;
+    for (int i = c; i < d; ++i) squared += m.local[i][c] * m.local[i][c];
+    for (int i = 0; i < c; ++i) above += m.local[i][c] * m.local[i][c];
+    if (!(squared > lost * lost * (squared + above))) return false;
+    const double alpha = m.local[c][c] > 0.0 ? -std::sqrt(squared) : std::sqrt(squared);
+    double v[Rows::most] = {};
+    for (int i = c; i < d; ++i) v[i] = m.local[i][c];
+    v[c] -= alpha;
+    double norm = 0.0;
+    for (int i = c; i < d; ++i) norm += v[i] * v[i];
+    const double twice = 2.0 / norm;
+    const auto reflect = [&](auto& matrix, int columns) {
+      for (int j = 0; j < columns; ++j) {
+        double sum = 0.0;
+        for (int i = c; i < d; ++i) sum += v[i] * matrix[i][j];
+        for (int i = c; i < d; ++i) matrix[i][j] -= twice * sum * v[i];
+      }
+    };
+    reflect(m.local, k);
+    reflect(m.rest, retained);
+    reflect(m.q, d);
+  }
+  return true;
+}
+
+bool triangularise(Rows& m, const LocalBlock& block) noexcept {
+  if (block.rows == 2 && block.locals == 2) return triangularise<2, 2>(m, 2, 2, block.retained);
+  if (block.rows == 2 && block.locals == 1) return triangularise<2, 1>(m, 2, 1, block.retained);
+  if (block.rows == 3 && block.locals == 3) return triangularise<3, 3>(m, 3, 3, block.retained);
+  if (block.rows == 3 && block.locals == 2) return triangularise<3, 2>(m, 3, 2, block.retained);
+  return triangularise<0, 0>(m, block.rows, block.locals, block.retained);
+}
+
+}  // namespace
 
 bool LocalElimination::update(Span<const double> jacobian) noexcept {
   int block_row = 0;
   for (const LocalBlock& block : blocks_) {
     const int d = block.rows, k = block.locals, p = block.retained;
-    double m[most_rows][most_rows] = {}, rest[most_rows][most_retained] = {};
+    Rows m;
     for (int i = 0; i < d; ++i, ++block_row) {
       const double* value = jacobian.data() + jacobian_begin_[at(block_row)];
       for (int e = entry_begin_[at(block_row)]; e < entry_begin_[at(block_row) + 1]; ++e) {
         const int place = entry_[at(e)];
-        (place < 0 ? m[i][-1 - place] : rest[i][place]) = *value++;
+        (place < 0 ? m.local[i][-1 - place] : m.rest[i][place]) = *value++;
       }
+      m.q[i][i] = 1.0;
     }
-    // Householder's reflections, applied to everything and gathered in Q.
-    double q[most_rows][most_rows] = {};
-    for (int i = 0; i < d; ++i) q[i][i] = 1.0;
-    for (int c = 0; c < k; ++c) {
-      double squared = 0.0, above = 0.0;
-      for (int i = c; i < d; ++i) squared += m[i][c] * m[i][c];
-      for (int i = 0; i < c; ++i) above += m[i][c] * m[i][c];
-      if (!(squared > lost * lost * (squared + above))) return false;
-      const double alpha = m[c][c] > 0.0 ? -std::sqrt(squared) : std::sqrt(squared);
-      double v[most_rows] = {};
-      double norm = 0.0;
-      for (int i = c; i < d; ++i) v[i] = m[i][c];
-      v[c] -= alpha;
-      for (int i = c; i < d; ++i) norm += v[i] * v[i];
-      const double twice = 2.0 / norm;
-      const auto reflect = [&](auto& matrix, int columns) {
-        for (int j = 0; j < columns; ++j) {
-          double sum = 0.0;
-          for (int i = c; i < d; ++i) sum += v[i] * matrix[i][j];
-          for (int i = c; i < d; ++i) matrix[i][j] -= twice * sum * v[i];
-        }
-      };
-      reflect(m, k);
-      reflect(rest, p);
-      reflect(q, d);  // gathers Qᵀ
-    }
+    if (!triangularise(m, block)) return false;
     double* store_q = q_.data() + block.first_q;
     for (int i = 0; i < d; ++i) {
-      for (int j = 0; j < d; ++j) store_q[i * d + j] = q[i][j];
+      for (int j = 0; j < d; ++j) store_q[i * d + j] = m.q[i][j];
     }
     double* r = r_.data() + block.first_r;
     for (int i = 0; i < k; ++i) {
-      for (int j = 0; j < k; ++j) r[i * k + j] = m[i][j];
+      for (int j = 0; j < k; ++j) r[i * k + j] = m.local[i][j];
     }
     double* a = a_.data() + block.first_a;
     for (int i = k - 1; i >= 0; --i) {
       for (int j = 0; j < p; ++j) {
-        double sum = rest[i][j];
+        double sum = m.rest[i][j];
         for (int l = i + 1; l < k; ++l) sum -= r[i * k + l] * a[l * p + j];
         a[i * p + j] = sum / r[i * k + i];
       }
     }
     double* b = b_.data() + block.first_b;
     for (int i = k; i < d; ++i) {
-      for (int j = 0; j < p; ++j) b[(i - k) * p + j] = rest[i][j];
+      for (int j = 0; j < p; ++j) b[(i - k) * p + j] = m.rest[i][j];
     }
   }
   return true;

@@ -93,7 +93,7 @@ bool ActiveSetMethod::solve(const std::vector<double>& multipliers) {
   values.hessian = point_.hessian;
   values.jacobian = point_.jacobian;
   values.softness = softness_;
-  const kkt::KktSystem::Outcome outcome = system_.factor(values);
+  const kkt::KktSystem::Outcome outcome = point_.system().factor(values);
   ++progress_.result().factorizations;
   progress_.result().factorization_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -112,7 +112,7 @@ void ActiveSetMethod::solve_again(const std::vector<double>& multipliers, int mo
   }
   point_.lagrangian_gradient(multipliers, stationarity_);
   for (std::size_t u = 0; u < right_a_.size(); ++u) right_a_[u] = -stationarity_[u];
-  system_.solve(right_a_, right_b_, {}, most_refinements, delta_, change_, refined);
+  point_.system().solve(right_a_, right_b_, {}, most_refinements, delta_, change_, refined);
   progress_.result().factorization_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -180,7 +180,6 @@ bool ActiveSetMethod::step(std::vector<double>& multipliers, double& length) {
 
 bool ActiveSetMethod::accept(bool& new_epoch) {
   if (!point_.accept(new_epoch).ok() || !point_.expand().ok()) return false;
-  if (new_epoch) system_.analyse(problem_, point_.jacobian);
   return true;
 }
 
@@ -198,7 +197,6 @@ Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
   multipliers.resize(at(problem_.rows()), 0.0);
   choose_active(multipliers);
   keep_active_forces(multipliers);
-  system_.analyse(problem_, point_.jacobian);
   double best = infinity, before = infinity, length = 0.0;
   int waited = 0;
   bool factors_fit = false;

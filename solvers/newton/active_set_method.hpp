@@ -27,9 +27,6 @@ class ActiveSetMethod {
   Ending run(std::vector<double>& multipliers);
   bool interrupted() const noexcept { return interrupted_; }
 
-  /// The system at the result, rows that are not active off: what a solver lends.
-  kkt::KktSystem& system() noexcept { return system_; }
-
  private:
   struct Errors {
     double stationarity = 0.0, violation = 0.0, complementarity = 0.0;
@@ -50,7 +47,6 @@ class ActiveSetMethod {
   Point& point_;
   Progress& progress_;
   Problem& problem_;
-  kkt::KktSystem system_;
   std::vector<Side> sides_, bounds_;
   std::vector<int> equalities_;
   std::vector<char> active_;  // per side

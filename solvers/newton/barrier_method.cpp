@@ -201,9 +201,9 @@ bool BarrierMethod::find_direction(double least_shift) {
   values.hessian = w;
   values.jacobian = point_.jacobian;
   values.softness = softness_;
-  if (!inertia_.factor(system_, values, least_shift, progress_.result())) return false;
+  if (!inertia_.factor(point_.system(), values, least_shift, progress_.result())) return false;
   const auto start = std::chrono::steady_clock::now();
-  system_.solve(right_a_, right_b_, {}, refinements, direction_.delta, direction_.rows, refined);
+  point_.system().solve(right_a_, right_b_, {}, refinements, direction_.delta, direction_.rows, refined);
   progress_.result().factorization_seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (std::size_t k = 0; k < sides_.size(); ++k) {
@@ -310,7 +310,6 @@ bool BarrierMethod::take(double primal, double dual, Ending& ending) {
     ending = {Claim::failed, status.text.empty() ? "an accepted point could not be evaluated" : status.text};
     return false;
   }
-  if (new_epoch) system_.analyse(problem_, point_.jacobian);
   return true;
 }
 
@@ -327,7 +326,6 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
     return {status.code == Code::failed ? Claim::failed : Claim::stalled,
             "the start cannot be evaluated: " + status.text};
   set_up(multipliers);
-  system_.analyse(problem_, point_.jacobian);
   largest_start_violation_ = violation(point_.rows, slack_);
   filter_.reset(1e4 * std::max(1.0, largest_start_violation_));
   fill_stationarity();

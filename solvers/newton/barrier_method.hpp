@@ -72,7 +72,6 @@ class BarrierMethod {
   Progress& progress_;
   BarrierSettings settings_;
   Problem& problem_;
-  kkt::KktSystem system_;
   InertiaCorrection inertia_;
   Filter filter_;
   std::vector<Side> sides_, bounds_;

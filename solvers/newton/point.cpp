@@ -17,7 +17,14 @@ Point::Point(Problem& problem, SolverResult& count) : problem_(problem), count_(
   fit_patterns();
 }
 
+kkt::KktSystem& Point::system() {
+  if (!analysed_) system_.analyse(problem_, jacobian);
+  analysed_ = true;
+  return system_;
+}
+
 void Point::fit_patterns() {
+  analysed_ = false;
   jacobian.assign(at(problem_.jacobian_pattern().entries()), 0.0);
   hessian.assign(at(problem_.hessian_pattern().entries()), 0.0);
 }

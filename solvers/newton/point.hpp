@@ -4,6 +4,7 @@
 
 #include "core/interfaces/problem.hpp"
 #include "core/interfaces/solver.hpp"
+#include "core/kkt/kkt_system.hpp"
 
 namespace bowstring::newton {
 
@@ -34,6 +35,9 @@ class Point {
 
   Problem& problem() const noexcept { return problem_; }
 
+  /// For the patterns of the current epoch, which are analysed when they are new.
+  kkt::KktSystem& system();
+
  private:
   void fit_patterns();
   template <class Call>
@@ -41,6 +45,8 @@ class Point {
 
   Problem& problem_;
   SolverResult& count_;
+  kkt::KktSystem system_;
+  bool analysed_ = false;
 };
 
 }  // namespace bowstring::newton
