@@ -22,7 +22,7 @@ constexpr int few_changes = 2;
 constexpr double few_of_rows = 0.005;
 constexpr int most_changes_of_set = 6;  // at one point
 constexpr int refinements = 6;
-constexpr double refined = 1e-9;  // relative residual that no further refinement is spent on
+constexpr double refined = 1e-7;  // relative residual that no further refinement is spent on
 // Times the tolerance, and times the error before: then the last factors serve for one more step.
 constexpr double near_enough = 30.0, fast_enough = 1e-2;
 constexpr int patience = 7;          // steps that may pass without smaller errors

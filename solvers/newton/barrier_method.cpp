@@ -21,7 +21,7 @@ constexpr double subproblem = 30.0;         // errors of a solved subproblem, in
 constexpr double boundary = 0.99;           // share of the way to a bound that a step may go
 constexpr double multiplier_spread = 1e10;  // of z s against μ
 constexpr int refinements = 3;
-constexpr double refined = 1e-9;  // relative residual that no further refinement is spent on
+constexpr double refined = 1e-7;  // relative residual that no further refinement is spent on
 // Of the filter's line search.
 constexpr double slope_power = 2.3, violation_power = 1.1, armijo = 1e-4, small_violation = 1e-4;
 constexpr double shortest_step = 1e-8;
