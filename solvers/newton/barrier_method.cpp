@@ -15,6 +15,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_slack = 1e-2;  // mm, of a row at a cold start
 constexpr double bound_push = 1e-2;   // of its size (at least 1): how far inside its bound an unknown starts
+// mm and N mm: a scene that begins with large forces needs a barrier that can hold them off the walls.
+constexpr double barrier_of_pull = 0.02, most_first_barrier = 10.0;
 constexpr double rows_of_first_barrier = 100.0;
 constexpr double barrier_factor = 0.05, barrier_power = 1.7;
 constexpr double subproblem = 30.0;         // errors of a solved subproblem, in units of the barrier
@@ -45,6 +47,10 @@ void BarrierMethod::set_up(Span<const double> start_multipliers) {
   equalities_ = equality_rows(problem_);
   row_share_ = std::min(1.0, rows_of_first_barrier / std::max<double>(1.0, static_cast<double>(sides_.size())));
   barrier_ = settings_.first_barrier;
+  if (!settings_.warm) {
+    const double pull = barrier_of_pull * point_.in_newtons(point_.gradient);
+    barrier_ = std::max(barrier_, std::min(pull, most_first_barrier));
+  }
   multipliers_.assign(at(problem_.rows()), 0.0);
   if (!start_multipliers.empty()) std::copy(start_multipliers.begin(), start_multipliers.end(), multipliers_.begin());
   const double mu = barrier_of_row();
