@@ -18,7 +18,7 @@ constexpr ParameterDeclaration schema[] = {
 };
 
 /// The last subproblems of the barrier are left to an active-set method: their rows are known by then. N mm
-constexpr double hand_overs[] = {1e-6};
+constexpr double hand_overs[] = {1e-4, 1e-6};
 
 class InteriorPoint final : public Solver {
  public:
