@@ -18,7 +18,7 @@ constexpr double bound_push = 1e-2;   // of its size (at least 1): how far insid
 // mm and N mm: a scene that begins with large forces needs a barrier that can hold them off the walls.
 constexpr double barrier_of_pull = 0.02, most_first_barrier = 2.0;
 constexpr double rows_of_first_barrier = 100.0;
-constexpr double barrier_factor = 0.05, barrier_power = 1.7;
+constexpr double barrier_factor = 0.05, barrier_power = 1.5;
 constexpr double subproblem = 30.0;         // errors of a solved subproblem, in units of the barrier
 constexpr double boundary = 0.99;           // share of the way to a bound that a step may go
 constexpr double multiplier_spread = 1e10;  // of z s against μ
