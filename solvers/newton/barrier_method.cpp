@@ -30,6 +30,10 @@ constexpr double slope_power = 2.3, violation_power = 1.1, armijo = 1e-4, small_
 constexpr double shortest_step = 1e-8;
 constexpr int most_shortenings = 40;
 constexpr int most_shifts = 6;        // of the Hessian, after line searches that found nothing
+constexpr double first_retry = 1e-3;  // N/mm
+// A motion without curvature, as of a rod that slides along an arc, goes far for next to nothing: where a whole step
+// that is to win less than the tolerance (N mm) is refused, a shift of that share of it (N/mm) keeps the motion short.
+constexpr double neutral_shift = 0.1, most_neutral_shift = 1e3;
 constexpr int patience = 8;           // iterations without progress at the last barrier
 constexpr int rows_patience = 25;     // iterations without progress of rows that fail
 constexpr double progressing = 0.99;  // of a violation
@@ -331,10 +335,16 @@ double BarrierMethod::search(double longest) {
   correction_rows_.resize(direction_.rows.size());
   double step = longest;
   bool whole = true;
+  neutral_ = false;
   for (int shortenings = 0; shortenings < most_shortenings && step > shortest_step; ++shortenings) {
     const Verdict verdict = try_step(direction_.delta, direction_.slack, step);
     if (verdict == Verdict::accepted) return step;
     if (verdict == Verdict::refused && whole && by_violation_ && correct(step)) return step;
+    if (verdict == Verdict::refused && whole && step == 1.0 && -base_.slope < progress_.limits().tolerance &&
+        base_.violation > 0.0 && inertia_.shift() < progress_.limits().tolerance * most_neutral_shift) {
+      neutral_ = true;
+      return 0.0;
+    }
     whole = false;
     step = verdict == Verdict::no_trial
                ? shorter(step, trial_failure_.code == Code::refused ? problem_.travelled() : 0.0)
@@ -492,7 +502,9 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
         status = point_.find_hessian(multipliers_);
         if (!status.ok()) return finish({Claim::failed, status.text});
       }
-      const double least_shift = shifts == 0 ? 0.0 : std::max(1e-3, 10.0 * inertia_.shift());
+      const double least_shift =
+          shifts == 0 ? 0.0
+                      : std::max(neutral_ ? neutral_shift * limits.tolerance : first_retry, 10.0 * inertia_.shift());
       trial_failure_ = {};
       if (!find_direction(least_shift)) {
         const int row = inertia_.outcome().singular_row;

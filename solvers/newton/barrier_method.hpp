@@ -102,6 +102,7 @@ class BarrierMethod {
     double violation = 0.0, objective = 0.0, slope = 0.0;
   } base_;
   std::vector<double> scaled_, trial_bound_slack_, correction_rows_, corrected_delta_, corrected_slack_;
+  bool neutral_ = false;       // the last line search was given up for a shift
   bool by_violation_ = false;  // the last trial was refused by a filter, and violates rows by more than the point
   Status trial_failure_;       // of the last trial, where it could not be evaluated
   Direction direction_;

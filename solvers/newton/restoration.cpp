@@ -15,7 +15,7 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double tightness = 1e-3;      // e of equality rows, of that of sides: what fails are the walls
+constexpr double tightness = 1e-4;      // e of equality rows, of that of sides: what fails are the walls
 constexpr double first_pull = 10.0;     // of the energy's forces: what violated rows push with at the start
 constexpr double least_force = 1.0;     // N
 constexpr double decade = 0.1;          // by which e falls
@@ -31,8 +31,8 @@ constexpr double shortest_step = 1e-9;
 constexpr int most_steps = 200, most_shortenings = 40, most_shifts = 6, most_saddles = 10;
 constexpr int most_sets = 4;  // of rows that a step would violate, at one point
 constexpr int refinements = 2, inverse_iterations = 10;
-constexpr double least_shift = 1e-9;    // N/mm: less curvature is none
-constexpr double off_saddle = 1.0;  // mm, the first trial along negative curvature
+constexpr double least_shift = 1e-9;  // N/mm: less curvature is none
+constexpr double off_saddle = 1.0;    // mm, the first trial along negative curvature
 
 double shorter(double step, double travelled) {
   constexpr double allowed = 0.45, least = 0.1, most = 0.7;  // the guard stands at half a clearance
@@ -259,7 +259,6 @@ bool Restoration::search(double longest, bool along_curvature) {
     const Status status = point_.try_out(trial_q_, trial_energy_, trial_rows_);
     if (!status.ok()) {
       trial_failure_ = status;
-      if (getenv("RDBG")&&along_curvature) fprintf(stderr,"   step %g status %d %g\n",step,int(status.code),problem_.travelled());
       step = shorter(step, status.code == Code::refused ? problem_.travelled() : 0.0);
       continue;
     }
@@ -267,7 +266,6 @@ bool Restoration::search(double longest, bool along_curvature) {
     read_bounds(trial_q_, trial_room_);
     const bool inside = std::all_of(trial_room_.begin(), trial_room_.end(), [](double room) { return room > 0.0; });
     const double there = inside ? value(trial_energy_, trial_rows_, trial_room_) : infinity;
-    if (getenv("RDBG")&&along_curvature) fprintf(stderr,"   step %g there %.10g here %.10g\n",step,there,here);
     if (along_curvature ? there < here - rounding : there <= here + armijo * step * slope + rounding) return true;
     step *= 0.5;
   }
@@ -331,9 +329,7 @@ Ending Restoration::run(double goal, std::vector<double>& multipliers) {
         continue;
       }
     }
-    if (getenv("RDBG")) fprintf(stderr,"R %d e %.2e worst %.4g off %.4g err %.3g lam %.3g shift %.2e curv %d\n",steps,softness_,worst,off,error,largest_force_,inertia_.shift(),along_curvature);
     bool found = search(longest_step(), along_curvature);
-    if (getenv("RDBG")) {double sl=0;double md=0;for(size_t u=0;u<delta_.size();++u){sl+=gradient_[u]*delta_[u];md=std::max(md,std::fabs(delta_[u]));} fprintf(stderr,"  found %d slope %.3g maxd %.3g value %.8g trial %.8g fail %d\n",found,sl,md,value(point_.energy,point_.rows,room_),value(trial_energy_,trial_rows_,trial_room_),int(trial_failure_.code));}
     if (!found && along_curvature) {
       saddles = most_saddles;
       continue;
