@@ -490,6 +490,7 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
       if (!restore("rows that fail come no closer", ending)) return finish(ending);
       best = least_violation = infinity;
       best_q.clear();
+      waited_for_rows = 0;
       continue;
     }
     status = point_.find_hessian(multipliers_);
@@ -497,6 +498,7 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
     double length = 0.0;
     Step longest;
     std::string why = "no step improves the point";
+    bool renewed = false;
     for (int shifts = 0; shifts <= most_shifts && length == 0.0; ++shifts) {
       if (shifts > 0) {
         status = point_.find_hessian(multipliers_);
@@ -507,6 +509,15 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
                       : std::max(neutral_ ? neutral_shift * limits.tolerance : first_retry, 10.0 * inertia_.shift());
       trial_failure_ = {};
       if (!find_direction(least_shift)) {
+        if (!renewed) {
+          // What was eliminated where it stands may no longer be what moves its rows.
+          renewed = true;
+          point_.analyse_again();
+          --shifts;
+          status = point_.find_hessian(multipliers_);
+          if (!status.ok()) return finish({Claim::failed, status.text});
+          continue;
+        }
         const int row = inertia_.outcome().singular_row;
         why =
             row < 0 ? "no shift of the Hessian gives usable factors" : row_name(problem_, row) + " contradicts others";

@@ -19,6 +19,7 @@ constexpr double tightness = 1e-4;      // e of equality rows, of that of sides:
 constexpr double first_pull = 10.0;     // of the energy's forces: what violated rows push with at the start
 constexpr double least_force = 1.0;     // N
 constexpr double decade = 0.1;          // by which e falls
+constexpr int least_decades = 5;        // before the end: a stiff curve, still straight, may yet give way
 constexpr double smallest = 1e-11;      // mm/N
 constexpr double bound_barrier = 1e-4;  // ν, N mm
 constexpr double solved = 5e-4;         // of the largest force: stationarity of Φ that lets e fall
@@ -119,7 +120,7 @@ double Restoration::value(double energy, const std::vector<double>& rows, const 
   double sum = 0.0;
   for (const int r : equalities_) {
     const double off = rows[at(r)] - problem_.row_lower()[at(r)];
-    sum += off * off / (tightness * softness_);
+    sum += off * off / (equality_softness_);
   }
   for (const Side& side : sides_) {
     const double off = std::max(0.0, side.violation(rows[at(side.index)]));
@@ -134,7 +135,7 @@ double Restoration::value(double energy, const std::vector<double>& rows, const 
 void Restoration::find_forces() {
   std::fill(force_.begin(), force_.end(), 0.0);
   for (const int r : equalities_) {
-    force_[at(r)] = (point_.rows[at(r)] - problem_.row_lower()[at(r)]) / (tightness * softness_);
+    force_[at(r)] = (point_.rows[at(r)] - problem_.row_lower()[at(r)]) / (equality_softness_);
   }
   for (const Side& side : sides_) {
     force_[at(side.index)] += side.sign * std::max(0.0, side.violation(point_.rows[at(side.index)])) / softness_;
@@ -171,7 +172,7 @@ bool Restoration::direction() {
   std::fill(soft_.begin(), soft_.end(), infinity);
   std::fill(right_b_.begin(), right_b_.end(), 0.0);
   for (const int r : equalities_) {
-    soft_[at(r)] = tightness * softness_;
+    soft_[at(r)] = equality_softness_;
     right_b_[at(r)] = problem_.row_lower()[at(r)] - point_.rows[at(r)];
   }
   const auto take_in = [&](const Side& side) {
@@ -236,6 +237,13 @@ bool Restoration::leftmost_direction() {
   return true;
 }
 
+/// Equality rows become tighter than the sides by and by: at once they would buckle a curve into its shortest waves.
+void Restoration::tighten() {
+  softness_ *= decade;
+  equality_softness_ =
+      std::min(decade * equality_softness_, std::max(tightness * softness_, decade * decade * equality_softness_));
+}
+
 double Restoration::longest_step() const {
   double longest = 1.0;
   for (std::size_t k = 0; k < bounds_.size(); ++k) {
@@ -296,9 +304,13 @@ Ending Restoration::run(double goal, std::vector<double>& multipliers) {
   read_bounds(point_.q, room_);
   system_.analyse(*relaxed_, point_.jacobian);
   const double pull = std::max(least_force, first_pull * point_.in_newtons(point_.gradient));
-  softness_ = std::min(1.0, largest_violation(problem_, point_.rows) / pull);
+  double sides = 0.0, equalities = 0.0;
+  for (const Side& side : sides_) sides = std::max(sides, side.violation(point_.rows[at(side.index)]));
+  for (const int r : equalities_) equalities = std::max(equalities, violation(problem_, point_.rows, r));
+  softness_ = std::max(sides, sides > tolerance ? 0.0 : equalities) / pull;
+  equality_softness_ = std::max(tightness * softness_, equalities / pull);
   double before_decade = infinity;
-  int saddles = 0;
+  int saddles = 0, decades = 0;
   for (int steps = 0;; ++steps) {
     find_gradient();
     const double off = summed(point_.rows), worst = largest_violation(problem_, point_.rows);
@@ -318,14 +330,16 @@ Ending Restoration::run(double goal, std::vector<double>& multipliers) {
         ++saddles;
       } else {
         const double left = pull_of_violation();
-        if (left <= stationary && worst > stays * before_decade && worst > little * tolerance) {
+        if (decades >= least_decades && left <= stationary && worst > stays * before_decade &&
+            worst > little * tolerance) {
           char text[160];
           std::snprintf(text, sizeof text, "no direction brings them closer (a share of %.0e of what they fail by)",
                         left);
           return finish(Claim::infeasible, std::string("the rows cannot hold together: ") + text + "; " + rows);
         }
         before_decade = worst;
-        softness_ *= decade;
+        tighten();
+        ++decades;
         continue;
       }
     }
@@ -340,7 +354,7 @@ Ending Restoration::run(double goal, std::vector<double>& multipliers) {
         return finish(Claim::stalled, "no step brings the rows closer; " + rows);
       }
       before_decade = worst;
-      softness_ *= decade;
+      tighten();
       continue;
     }
     if (Status status = take(); !status.ok()) return finish(Claim::failed, status.text);

@@ -13,11 +13,11 @@ namespace bowstring::newton {
 
 /// Brings rows together where a line search on the whole problem finds no way: Newton's method, with exact second
 /// derivatives, on
-///   Φ(q) = E + Σ c²/(2 e κ) + Σ max(0, g)²/(2 e) − ν Σ log(room of bounded unknowns),
-/// c the equality rows, g the sides of the others, e (mm/N) falling by decades (R. Fletcher, Practical Methods of
-/// Optimization, 12.1). The energy is the metric in which the least-squares step is short: curves stay smooth. Where
-/// rows can hold together, what is left of them falls with e. Where they cannot, it stays, and a stationary point of
-/// the violation with no direction of negative curvature is the end.
+///   Φ(q) = E + Σ c²/(2 f) + Σ max(0, g)²/(2 e) − ν Σ log(room of bounded unknowns),
+/// c the equality rows, g the sides of the others, e and f (mm/N) falling by decades, f to far below e (R. Fletcher,
+/// Practical Methods of Optimization, 12.1). The energy is the metric in which the least-squares step is short: curves
+/// stay smooth. Where rows can hold together, what is left of them falls with e. Where they cannot, it stays, and a
+/// stationary point of the violation with no direction of negative curvature is the end.
 class Restoration {
  public:
   Restoration(Point& point, Progress& progress);
@@ -37,6 +37,7 @@ class Restoration {
   bool direction();
   bool leftmost_direction();
   bool search(double longest, bool along_curvature);
+  void tighten();
   double longest_step() const;
   Status take();
 
@@ -48,7 +49,7 @@ class Restoration {
   InertiaCorrection inertia_;
   std::vector<Side> sides_, bounds_;
   std::vector<int> equalities_;
-  double softness_ = 1.0;
+  double softness_ = 1.0, equality_softness_ = 1.0;
   double largest_force_ = 0.0;
   std::vector<double> force_, gradient_, room_;
   std::vector<double> soft_, right_a_, right_b_, delta_, lambda_;
