@@ -37,6 +37,7 @@ constexpr double neutral_shift = 0.1, most_neutral_shift = 1e3;
 constexpr int patience = 8;           // iterations without progress at the last barrier
 constexpr int rows_patience = 25;     // iterations without progress of rows that fail
 constexpr double progressing = 0.99;  // of a violation
+constexpr double far_apart = 1e-2;    // mm: rows that fail by more have to come closer
 constexpr double noticeable = 1e-5;   // mm: rows that fail by so little are left to Newton's steps
 constexpr double restored = 0.1;      // of the violation that a restoration begins with
 constexpr int most_restorations = 5;
@@ -406,6 +407,8 @@ bool BarrierMethod::restore(const std::string& why, Ending& ending) {
     return false;
   }
   point_.analyse_again();
+  inertia_ = {};
+  std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
   barrier_ = std::max(barrier_, settings_.first_barrier);
   fill_slacks(false);
   fill_stationarity();
@@ -482,7 +485,7 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
     }
 
     Ending ending;
-    waited_for_rows = of_problem.violation > noticeable && !(of_problem.violation < progressing * least_violation)
+    waited_for_rows = of_problem.violation > far_apart && !(of_problem.violation < progressing * least_violation)
                           ? waited_for_rows + 1
                           : 0;
     if (waited_for_rows == 0) least_violation = of_problem.violation;
@@ -528,6 +531,7 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
     }
     if (length == 0.0) {
       if (trial_failure_.code == Code::failed) return finish({Claim::failed, trial_failure_.text});
+      if (trial_failure_.code == Code::refused) why = "every trial step was refused, however short";
       if (!restore(why, ending)) return finish(ending);
       best = least_violation = infinity;
       best_q.clear();

@@ -22,6 +22,7 @@ constexpr double decade = 0.1;          // by which e falls
 constexpr int least_decades = 5;        // before the end: a stiff curve, still straight, may yet give way
 constexpr double smallest = 1e-11;      // mm/N
 constexpr double bound_barrier = 1e-4;  // ν, N mm
+constexpr double nearly_solved = 0.1;   // of the largest force: stationarity of Φ that lets e fall
 constexpr double solved = 5e-4;         // of the largest force: stationarity of Φ that lets e fall
 constexpr double stationary = 1e-3;     // of a unit of violation
 constexpr double stays = 0.9;           // of a violation, over a decade of e: it does not fall
@@ -297,7 +298,8 @@ Status Restoration::take() {
 
 Ending Restoration::run(double goal, std::vector<double>& multipliers) {
   const auto finish = [&](Claim claim, const std::string& reason) {
-    multipliers = force_;
+    // Those of rows that cannot hold together grow with every decade, and say nothing.
+    multipliers = claim == Claim::infeasible ? std::vector<double>() : force_;
     return Ending{claim, reason};
   };
   const double tolerance = progress_.limits().tolerance;
@@ -324,19 +326,22 @@ Ending Restoration::run(double goal, std::vector<double>& multipliers) {
     if (!direction()) return finish(Claim::stalled, "no shift of the Hessian gives usable factors; " + rows);
     const bool curved = inertia_.shift() > 0.0;
     bool along_curvature = false;
-    if (error <= solved * largest_force_) {
-      if (curved && saddles < most_saddles && leftmost_direction()) {
-        along_curvature = true;
-        ++saddles;
-      } else {
+    const bool settled = error <= solved * largest_force_;
+    if (settled && curved && saddles < most_saddles && leftmost_direction()) {
+      along_curvature = true;
+      ++saddles;
+    } else if (error <= nearly_solved * largest_force_) {
+      const bool final = decades >= least_decades && worst > stays * before_decade;
+      if (final && settled) {
         const double left = pull_of_violation();
-        if (decades >= least_decades && left <= stationary && worst > stays * before_decade &&
-            worst > little * tolerance) {
+        if (left <= stationary && worst > little * tolerance) {
           char text[160];
           std::snprintf(text, sizeof text, "no direction brings them closer (a share of %.0e of what they fail by)",
                         left);
           return finish(Claim::infeasible, std::string("the rows cannot hold together: ") + text + "; " + rows);
         }
+      }
+      if (!final || settled) {
         before_decade = worst;
         tighten();
         ++decades;
@@ -351,7 +356,10 @@ Ending Restoration::run(double goal, std::vector<double>& multipliers) {
     if (!found) {
       if (trial_failure_.code == Code::failed) return finish(Claim::failed, trial_failure_.text);
       if (error > stationary * largest_force_) {
-        return finish(Claim::stalled, "no step brings the rows closer; " + rows);
+        const bool refused = trial_failure_.code == Code::refused;
+        return finish(Claim::stalled, (refused ? "every trial step towards the rows was refused, however short; "
+                                               : "no step brings the rows closer; ") +
+                                          rows);
       }
       before_decade = worst;
       tighten();

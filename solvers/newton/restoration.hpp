@@ -23,7 +23,8 @@ class Restoration {
   Restoration(Point& point, Progress& progress);
 
   /// From point.q, which is accepted and expanded, until Σ violations ≤ goal: the claim is `optimal` then. Otherwise
-  /// `infeasible`, with the rows that fail; `stalled`; `failed`. `multipliers`: m, those that Φ gives, at the end.
+  /// `infeasible`, with the rows that fail; `stalled`; `failed`. `multipliers`: m, those that Φ gives, at the end; none
+  /// where the claim is `infeasible`.
   Ending run(double goal, std::vector<double>& multipliers);
 
  private:
