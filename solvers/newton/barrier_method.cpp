@@ -33,7 +33,7 @@ constexpr int most_shifts = 6;        // of the Hessian, after line searches tha
 constexpr double first_retry = 1e-3;  // N/mm
 // A motion without curvature, as of a rod that slides along an arc, goes far for next to nothing: where a whole step
 // that is to win less than the tolerance (N mm) is refused, a shift of that share of it (N/mm) keeps the motion short.
-constexpr double neutral_shift = 0.1, most_neutral_shift = 1e3;
+constexpr double neutral_shift = 1e3, most_neutral_shift = 1e5;
 constexpr int patience = 8;           // iterations without progress at the last barrier
 constexpr int rows_patience = 25;     // iterations without progress of rows that fail
 constexpr double progressing = 0.99;  // of a violation
@@ -419,6 +419,12 @@ bool BarrierMethod::restore(const std::string& why, Ending& ending) {
 Ending BarrierMethod::run(std::vector<double>& multipliers) {
   const auto finish = [&](Ending ending) {
     multipliers = multipliers_;
+    // What is stuck while it grows has no bound to come to.
+    std::string reason;
+    const bool stuck = ending.claim == Claim::stalled && progress_.reason().empty();
+    if (stuck && growth_.unbounded(problem_, point_.q, point_.energy, reason, true)) {
+      ending = {Claim::diverged, reason + "; there " + ending.reason};
+    }
     return ending;
   };
   keep_inside();

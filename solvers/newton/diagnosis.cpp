@@ -12,7 +12,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double alike = 1.0 + 1e-9;  // a row is named where it is worse than those before it
 constexpr double outgrown = 1e3;      // sizes of the scene at the start
-constexpr double overlong = 5.0;      // lengths of a sliding wire at the start: it coils
+constexpr double long_when_stuck = 2.0;
+constexpr double overlong = 5.0;  // lengths of a sliding wire at the start: it coils
 
 template <class... Numbers>
 std::string text(const char* format, Numbers... numbers) {
@@ -91,7 +92,8 @@ void Growth::start(const Problem& problem, Span<const double> q, double energy) 
   problem.values(q, values_);
 }
 
-bool Growth::unbounded(const Problem& problem, Span<const double> q, double energy, std::string& reason) const {
+bool Growth::unbounded(const Problem& problem, Span<const double> q, double energy, std::string& reason,
+                       bool stuck) const {
   if (!(energy < energy_)) return false;
   const Span<const int> order = problem.order();
   const std::size_t inner = order.size() - at(problem.border());
@@ -103,7 +105,8 @@ bool Growth::unbounded(const Problem& problem, Span<const double> q, double ener
   int wire = -1;
   for (std::size_t k = inner; k < order.size(); ++k) {
     const std::size_t u = at(order[k]);
-    if (u >= now_.size() || !(values_[u] > 0.0) || !(now_[u] > overlong * values_[u])) continue;
+    if (u >= now_.size() || !(values_[u] > 0.0) || !(now_[u] > (stuck ? long_when_stuck : overlong) * values_[u]))
+      continue;
     if (wire < 0 || now_[u] / values_[u] > now_[at(wire)] / values_[at(wire)]) wire = order[k];
   }
   if (!everything && wire < 0) return false;

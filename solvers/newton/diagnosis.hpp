@@ -26,8 +26,10 @@ double extent(Span<const double> q) noexcept;
 class Growth {
  public:
   void start(const Problem& problem, Span<const double> q, double energy);
-  /// Whether that is so, and then in which direction, with figures.
-  bool unbounded(const Problem& problem, Span<const double> q, double energy, std::string& reason) const;
+  /// Whether that is so, and then in which direction, with figures. `stuck`: the method finds no step any more, and
+  /// less growth tells.
+  bool unbounded(const Problem& problem, Span<const double> q, double energy, std::string& reason,
+                 bool stuck = false) const;
 
  private:
   double energy_ = 0.0, extent_ = 0.0;

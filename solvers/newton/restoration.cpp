@@ -180,27 +180,50 @@ bool Restoration::direction() {
     soft_[at(side.index)] = softness_;
     right_b_[at(side.index)] = side.bound - point_.rows[at(side.index)];
   };
+  const auto violated = [&](const Side& side) { return side.violation(point_.rows[at(side.index)]) > 0.0; };
   for (const Side& side : sides_) {
-    if (side.violation(point_.rows[at(side.index)]) > 0.0) take_in(side);
+    if (violated(side)) take_in(side);
   }
   kkt::KktSystem::Values values;
   values.hessian = point_.hessian;
   values.jacobian = point_.jacobian;
   values.softness = soft_;
-  for (int k = 0; k < most_sets; ++k) {
+  const auto step = [&] {
     if (!inertia_.factor(system_, values, 0.0, progress_.result())) return false;
     system_.solve(right_a_, right_b_, {}, refinements, delta_, lambda_);
-    bool any = false;
+    return true;
+  };
+  // Rows that the step would violate push against it, and those that only pull are let go.
+  bool changed = true;
+  for (int k = 0; changed && k < most_sets; ++k) {
+    if (!step()) return false;
+    changed = false;
     for (const Side& side : sides_) {
-      if (std::isfinite(soft_[at(side.index)])) continue;
-      const double gap = side.violation(point_.rows[at(side.index)]);
-      if (gap + side.sign * point_.row_rate(side.index, delta_) <= 0.0) continue;
-      take_in(side);
-      any = true;
+      if (violated(side)) continue;
+      if (!std::isfinite(soft_[at(side.index)])) {
+        const double gap = side.violation(point_.rows[at(side.index)]);
+        if (gap + side.sign * point_.row_rate(side.index, delta_) <= 0.0) continue;
+        take_in(side);
+      } else {
+        if (side.sign * lambda_[at(side.index)] >= 0.0) continue;
+        soft_[at(side.index)] = infinity;
+        right_b_[at(side.index)] = 0.0;
+      }
+      changed = true;
     }
-    if (!any) break;
   }
-  return true;
+  double slope = 0.0;
+  for (std::size_t u = 0; u < delta_.size(); ++u) slope += gradient_[u] * delta_[u];
+  if (slope < 0.0) return true;
+  for (const Side& side : sides_) {
+    if (violated(side)) continue;
+    soft_[at(side.index)] = infinity;
+    right_b_[at(side.index)] = 0.0;
+  }
+  for (const Side& side : sides_) {
+    if (violated(side)) take_in(side);
+  }
+  return step();
 }
 
 /// Next to the leftmost eigenvector of the Hessian, by inverse iteration with the factors of a shift not far beyond it.
@@ -330,7 +353,7 @@ Ending Restoration::run(double goal, std::vector<double>& multipliers) {
     if (settled && curved && saddles < most_saddles && leftmost_direction()) {
       along_curvature = true;
       ++saddles;
-    } else if (error <= nearly_solved * largest_force_) {
+    } else if (settled || (!curved && error <= nearly_solved * largest_force_)) {
       const bool final = decades >= least_decades && worst > stays * before_decade;
       if (final && settled) {
         const double left = pull_of_violation();
