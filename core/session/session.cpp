@@ -188,6 +188,7 @@ Solution solve_from(Session& session, const std::vector<double>& q, Span<const d
     solution.solver.reason = "solver '" + session.composition.solver.name + "': " + status.text;
   }
   session.seconds.solve += since(begin);
+  const auto judging = Clock::now();
 
   solution.q = solution.solver.q.empty() ? q : solution.solver.q;
   solution.multipliers = solution.solver.multipliers;
@@ -205,6 +206,7 @@ Solution solve_from(Session& session, const std::vector<double>& q, Span<const d
     solution.certificate = unknown_certificate();
     solution.certificate.reason = solution.solver.claim == Claim::failed ? solution.solver.reason : status.text;
   }
+  session.seconds.certificate += since(judging);
   const ParameterValue* tolerance = session.composition.solver.parameters.find("tolerance");
   const Certificate& certificate = solution.certificate;
   if (certificate.first_order && tolerance != nullptr && certificate.stationarity > tolerance->number) {
@@ -232,7 +234,7 @@ Solution unsolved(const Session& session, const std::vector<double>& q, const st
 
 Solution solve(Session& session, const std::function<bool(const IterationRecord&)>& progress, const Start* start) {
   const auto begin = Clock::now();
-  session.seconds.solve = 0.0;
+  session.seconds.solve = session.seconds.certificate = 0.0;
   const Start& from = start != nullptr ? *start : session.start;
   bool by_user = false;
   const auto watched = [&](const IterationRecord& record) {

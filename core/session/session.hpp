@@ -19,6 +19,7 @@ struct Seconds {
   double load = 0.0;   ///< composition read, plugins opened
   double setup = 0.0;  ///< scene built, patterns found
   double solve = 0.0;
+  double certificate = 0.0;  ///< the solver's point accepted and certified
   double total = 0.0;
 };
 
