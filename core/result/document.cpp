@@ -111,6 +111,11 @@ Json solver(const SessionRecord& session, const Solution& solution) {
         {"factorization", result.factorization_seconds > 0.0 ? Json(result.factorization_seconds) : Json(nullptr)}}}};
 }
 
+std::vector<std::string> joined(std::vector<std::string> texts, const std::vector<std::string>& more) {
+  texts.insert(texts.end(), more.begin(), more.end());
+  return texts;
+}
+
 Json certificate(const Certificate& c) {
   const bool judged = c.second_order.curvature != Curvature::unjudged;
   return {{"stationarity", finite(c.stationarity)},
@@ -129,7 +134,7 @@ Json certificate(const Certificate& c) {
           {"neutral_modes", c.second_order.neutral_modes},
           {"deciding_rows", c.second_order.deciding_rows},
           {"weakly_active", c.weakly_active},
-          {"folds", c.folds},
+          {"folds", joined(c.folds, c.wire_folds)},
           {"crossings", c.crossings},
           {"verdict", verdict_name(c.verdict)}};
 }

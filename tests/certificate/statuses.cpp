@@ -271,6 +271,84 @@ TEST_CASE("folds are told from what is allowed: a stretch ratio of 0.19 from 0.2
   }
 }
 
+TEST_CASE("a wire that turns back on itself is told from one that bends by 88 degrees: 92 are no shape of a curve") {
+  SmallScene small;
+  small.geometry = R"({ type = "line", length = "40 mm", nodes = 8 })";
+  small.vessel_kinematics = small.wire_kinematics = "nodes";
+  small.radius = "\"60 mm\"";
+  const auto session = session_of(small);
+  const Curve& wire = *session->scene->find("wire");
+  const std::vector<double> none(at(session->assembly->rows()), 0.0);
+  for (const double degrees : {88.0, 92.0}) {
+    CAPTURE(degrees);
+    std::vector<double> q = session->scene->start_coordinates();
+    const double angle = degrees / 180.0 * std::acos(-1.0), edge = 40.0 / (wire.view.nodes - 1);
+    for (int i = 4; i < wire.view.nodes; ++i) {
+      const double along = (i - 3) * edge;
+      node(wire, q, i)[0] = node(wire, q, 3)[0] + along * std::cos(angle);
+      node(wire, q, i)[1] = node(wire, q, 3)[1] + along * std::sin(angle);
+    }
+    REQUIRE(session->assembly->accept(q).ok());
+    const Certificate found = certified(*session->assembly, q, none, no_thresholds());
+    CHECK(found.verdict == (degrees > 90.0 ? Verdict::invalid : Verdict::converged));
+    CHECK(found.folds.empty());
+    CHECK(found.wire_folds.size() == (degrees > 90.0 ? 1 : 0));
+    char place[120];
+    std::snprintf(place, sizeof place, "edge 3 of wire 'wire' at s = %.4g mm turns by more than 90 degrees",
+                  3.0 * edge);
+    if (degrees > 90.0) CHECK(found.reason.rfind(place, 0) == 0);
+    if (degrees > 90.0) CHECK(contains(found.reason, "use a finer wire mesh, or push the wire less"));
+  }
+}
+
+TEST_CASE("the row that fails the most is named with its place: of a contact, of a closure") {
+  for (const char* kinematics : {"nodes", "edge-frames"}) {
+    CAPTURE(std::string(kinematics));
+    SmallScene small;
+    small.geometry = R"({ type = "line", length = "40 mm", nodes = 8 })";
+    small.radius = "\"3 mm\"";
+    small.vessel_kinematics = small.wire_kinematics = kinematics;
+    const auto session = session_of(small);
+    const Curve& wire = *session->scene->find("wire");
+    const std::vector<double> none(at(session->assembly->rows()), 0.0);
+    std::vector<double> q = session->scene->start_coordinates();
+    CertificateTable rows = no_thresholds();
+    rows.penetration = 1e-8;
+    for (int i = 1; i + 1 < wire.view.nodes; ++i) node(wire, q, i)[1] += i == 3 ? 9.0 : 0.5;
+    REQUIRE(session->assembly->accept(q).ok());
+    const Certificate out = certified(*session->assembly, q, none, rows);
+    CHECK(out.worst_row >= 0);
+    INFO(out.reason);
+    REQUIRE(out.penetration > 4.0);
+    // Arc lengths of the curves as they lie: the wire's to its node 3, State 1's of the vessel below it.
+    double arc = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      arc += std::hypot(node(wire, q, i + 1)[0] - node(wire, q, i)[0], node(wire, q, i + 1)[1] - node(wire, q, i)[1]);
+    }
+    char contact[160];
+    std::snprintf(contact, sizeof contact, " of 'lumen' (wire 'wire' at s = %.4g mm, vessel 'vessel' at s = %.4g mm)",
+                  arc, node(wire, q, 3)[0]);
+    const bool at_contact = contains(out.reason, contact);
+    const bool at_closure = contains(out.reason, " of 'wire.closure'");
+    CHECK(at_contact != at_closure);
+    CHECK(at_contact == (out.worst_row >= contact_rows(*session->assembly).first));
+
+    // One edge of the wire torn open along the axis.
+    q = session->scene->start_coordinates();
+    for (int i = 4; i < wire.view.nodes - 1; ++i) node(wire, q, i)[0] += 1.5;
+    REQUIRE(session->assembly->accept(q).ok());
+    const Certificate torn = certified(*session->assembly, q, none, rows);
+    INFO(torn.reason);
+    REQUIRE(torn.penetration > 1.0);
+    CHECK(contains(torn.reason, " of 'wire.closure'"));
+    if (std::string(kinematics) == "edge-frames") {
+      const bool named = contains(torn.reason, "(edge 3 of 'wire' at s = 20 mm)") ||
+                         contains(torn.reason, "(edge 5 of 'wire' at s = 34.83 mm)");
+      CHECK(named);
+    }
+  }
+}
+
 TEST_CASE("where thresholds are missed as well, a fold is told all the same") {
   SmallScene small;
   small.vessel_kinematics = small.wire_kinematics = "nodes";
