@@ -59,7 +59,9 @@ void judge_rows(const Assembly& assembly, const std::vector<double>& residual, S
   for (int r = 0; r < assembly.rows(); ++r) {
     const double lower = assembly.row_lower()[at(r)];
     const double upper = assembly.row_upper()[at(r)];
+    const double before = out.penetration;
     out.penetration = worst(worst(out.penetration, residual[at(r)] - upper), lower - residual[at(r)]);
+    if (out.penetration != before) out.worst_row = r;
     if (lower == upper) continue;
     const RowSide side = row_side(lower, upper, residual[at(r)], multipliers[at(r)]);
     out.minimum_multiplier = any ? std::min(out.minimum_multiplier, side.multiplier) : side.multiplier;
@@ -72,10 +74,12 @@ void judge_rows(const Assembly& assembly, const std::vector<double>& residual, S
 void judge_folds(const Assembly& assembly, double minimum_stretch, Certificate& out) {
   bool any = false;
   for (const auto& curve : assembly.scene().curves) {
-    if (curve->view.kind != CurveKind::vessel || curve->view.rigid) continue;
+    const bool vessel = curve->view.kind == CurveKind::vessel;
+    if (vessel && curve->view.rigid) continue;
     const double* p = assembly.table(curve->view.index, Site::node);
     const int d = curve->view.dimension;
     double previous[3] = {};
+    double arc = 0.0;
     for (int i = 0; i + 1 < curve->view.nodes; ++i) {
       double edge[3] = {};
       double squared = 0.0;
@@ -85,7 +89,18 @@ void judge_folds(const Assembly& assembly, double minimum_stretch, Certificate& 
         squared += edge[k] * edge[k];
         turn += edge[k] * previous[k];
       }
-      const double stretch = std::sqrt(squared) / curve->view.edge_length[i];
+      std::copy_n(edge, 3, previous);
+      const double length = std::sqrt(squared);
+      const std::string turns_back = " turns by more than 90 degrees against the one before it";
+      if (!vessel) {
+        if (i > 0 && turn < 0.0) {
+          out.wire_folds.push_back("edge " + std::to_string(i) + " of wire '" + curve->name +
+                                   "' at s = " + number(arc) + " mm" + turns_back + ", which is no shape of a curve");
+        }
+        arc += length;
+        continue;
+      }
+      const double stretch = length / curve->view.edge_length[i];
       out.minimum_stretch = any ? std::min(out.minimum_stretch, stretch) : stretch;
       out.maximum_stretch = any ? std::max(out.maximum_stretch, stretch) : stretch;
       any = true;
@@ -93,10 +108,8 @@ void judge_folds(const Assembly& assembly, double minimum_stretch, Certificate& 
       if (stretch <= minimum_stretch) {
         out.folds.push_back("edge " + std::to_string(i) + place + " has folded: stretch ratio " + number(stretch));
       } else if (i > 0 && turn < 0.0) {
-        out.folds.push_back("edge " + std::to_string(i) + place +
-                            " turns by more than 90 degrees against the one before it");
+        out.folds.push_back("edge " + std::to_string(i) + place + turns_back);
       }
-      std::copy_n(edge, 3, previous);
     }
   }
 }
@@ -147,15 +160,69 @@ void judge_crossings(const Assembly& assembly, Certificate& out) {
   }
 }
 
-std::string misses(const Certificate& c, const CertificateTable& t) {
+/// Arc length (mm) of the curve as it lies, at a coordinate in edges.
+double arc_at(const Assembly& assembly, const Curve& curve, double coordinate) {
+  const double* p = assembly.table(curve.view.index, Site::node);
+  const int d = curve.view.dimension;
+  double arc = 0.0;
+  for (int i = 0; i + 1 < curve.view.nodes && coordinate > i; ++i) {
+    double squared = 0.0;
+    for (int k = 0; k < d; ++k) squared += (p[(i + 1) * d + k] - p[i * d + k]) * (p[(i + 1) * d + k] - p[i * d + k]);
+    arc += std::min(1.0, coordinate - i) * std::sqrt(squared);
+  }
+  return arc;
+}
+
+/// " in row 3 of 'lumen' (wire 'w' at s = 12 mm, vessel 'v' at s = 11 mm)"; empty where nothing is known of the row.
+std::string place_of_row(Assembly& assembly, Span<const double> q, int row) {
+  const Scene& scene = assembly.scene();
+  for (const RowOrigin& origin : assembly.row_origins()) {
+    const int within = row - origin.first;
+    if (within < 0 || within >= origin.count) continue;
+    std::string text = " in row " + std::to_string(within) + " of '" + origin.name + "'";
+    if (origin.constraint >= 0) {
+      std::vector<RowReport> reports;
+      if (!assembly.report(q, origin.constraint, reports).ok() || at(within) >= reports.size()) return text;
+      const RowReport& report = reports[at(within)];
+      if (report.wire_curve < 0) return text;
+      const Curve& wire = *scene.curves[at(report.wire_curve)];
+      text += " (wire '" + wire.name + "' at s = " + number(arc_at(assembly, wire, report.wire_coordinate)) + " mm";
+      if (report.vessel_curve >= 0) {
+        const Curve& vessel = *scene.curves[at(report.vessel_curve)];
+        const int last = vessel.view.nodes - 1;
+        const int edge = std::clamp(static_cast<int>(report.vessel_coordinate), 0, last - 1);
+        const double share = std::clamp(report.vessel_coordinate - edge, 0.0, 1.0);
+        const double arc = (1.0 - share) * vessel.arc[at(edge)] + share * vessel.arc[at(edge + 1)];
+        text += ", vessel '" + vessel.name + "' at s = " + number(arc) + " mm";
+      }
+      return text + ")";
+    }
+    if (origin.curve < 0) return text;
+    const Curve& curve = *scene.curves[at(origin.curve)];
+    int edge = -1, place = 0;
+    for (const LocalRows& local : assembly.local_rows()) {
+      if (local.first_row < origin.first || local.first_row >= origin.first + origin.count) continue;
+      if (row >= local.first_row && row < local.first_row + local.rows) edge = place;
+      ++place;
+    }
+    if (edge < 0 && origin.count == curve.view.nodes - 1) edge = within;
+    if (edge < 0) return text;
+    return text + " (edge " + std::to_string(edge) + " of '" + curve.name +
+           "' at s = " + number(arc_at(assembly, curve, edge)) + " mm)";
+  }
+  return "";
+}
+
+std::string misses(const Certificate& c, const CertificateTable& t, const std::string& place) {
   std::string text;
-  const auto add = [&](bool missed, const char* what, double value, double threshold, const char* unit) {
+  const auto add = [&](bool missed, const char* what, double value, double threshold, const char* unit,
+                       const std::string& where = "") {
     if (!missed) return;
     text += (text.empty() ? "" : ", ") + std::string(what) + " " + number(value) + " " + unit + " (threshold " +
-            number(threshold) + ")";
+            number(threshold) + ")" + where;
   };
   add(!(c.stationarity <= t.stationarity), "stationarity", c.stationarity, t.stationarity, "N");
-  add(!(c.penetration <= t.penetration), "row penetration", c.penetration, t.penetration, "mm");
+  add(!(c.penetration <= t.penetration), "row penetration", c.penetration, t.penetration, "mm", place);
   add(!(c.complementarity <= t.complementarity), "complementarity", c.complementarity, t.complementarity, "N mm");
   add(!(c.minimum_multiplier >= t.multiplier), "smallest multiplier", c.minimum_multiplier, t.multiplier, "N");
   return text;
@@ -172,11 +239,20 @@ std::string unmet(const CertificateTable& thresholds, const SecondOrder& second)
 
 void conclude(const CertificateTable& thresholds, Claim claim, const std::string& claim_reason,
               const std::string& missed, Certificate& out) {
-  const std::string flaw =
-      !out.crossings.empty() ? out.crossings.front() : (out.folds.empty() ? "" : out.folds.front());
-  const std::string mend =
-      !out.crossings.empty() ? "; use a finer wire mesh, a constraint with rows between the nodes, or walk the load up"
-                             : "; give the vessel a stretch-stiffness, or a coarser mesh";
+  const auto first = [](const std::vector<std::string>& texts) {
+    return texts.empty() ? std::string() : texts.front();
+  };
+  std::string flaw, mend;
+  if (!out.crossings.empty()) {
+    flaw = first(out.crossings);
+    mend = "; use a finer wire mesh, a constraint with rows between the nodes, or walk the load up";
+  } else if (!out.folds.empty()) {
+    flaw = first(out.folds);
+    mend = "; give the vessel a stretch-stiffness, or a coarser mesh";
+  } else if (!out.wire_folds.empty()) {
+    flaw = first(out.wire_folds);
+    mend = "; use a finer wire mesh, or push the wire less";
+  }
   const std::string wanting = unmet(thresholds, out.second_order);
   if (out.first_order && flaw.empty() && !wanting.empty()) {
     out.verdict = Verdict::stalled;
@@ -248,7 +324,8 @@ Status certify(Assembly& assembly, Span<const double> q, Span<const double> mult
   judge_folds(assembly, thresholds.minimum_stretch, out);
   judge_crossings(assembly, out);
   out.rounding_floor = assembly.rounding_floor();
-  const std::string missed = misses(out, thresholds);
+  const bool rows_fail = !(out.penetration <= thresholds.penetration) && out.worst_row >= 0;
+  const std::string missed = misses(out, thresholds, rows_fail ? place_of_row(assembly, q, out.worst_row) : "");
   out.first_order = missed.empty();
   if (out.first_order) {
     judge_second_order(assembly, q, multipliers, out.stationarity, out.second_order);

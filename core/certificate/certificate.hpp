@@ -24,13 +24,15 @@ struct Certificate {
   double stationarity = 0.0;     ///< N: largest entry of the projected Lagrangian gradient, rotations per edge length
   double rounding_floor = 0.0;   ///< N: what the formulations' rounding leaves of it
   double penetration = 0.0;      ///< mm: largest violation of a row
+  int worst_row = -1;            ///< the row of that
   double complementarity = 0.0;  ///< N mm: largest |multiplier × distance of the row to its bound|
   double minimum_multiplier = 0.0;                      ///< N: smallest signed multiplier, 0 without signed rows
   double minimum_stretch = 1.0, maximum_stretch = 1.0;  ///< ℓ/ℓ⁰ over vessel edges
   std::vector<PairPenetration> pairs;
-  std::vector<int> weakly_active;      ///< inequality rows at their bound whose multiplier nearly vanishes
-  std::vector<std::string> folds;      ///< each: place and amount of a folded edge or an active bound
-  std::vector<std::string> crossings;  ///< each: place and amount of a wall crossed between rows
+  std::vector<int> weakly_active;       ///< inequality rows at their bound whose multiplier nearly vanishes
+  std::vector<std::string> folds;       ///< each: place and amount of a folded edge or an active bound
+  std::vector<std::string> wire_folds;  ///< each: place of a wire's edge that turns back against the one before it
+  std::vector<std::string> crossings;   ///< each: place and amount of a wall crossed between rows
   bool first_order = false;  ///< stationarity, rows, complementarity and multipliers are within the thresholds
   SecondOrder second_order;  ///< judged where `first_order` holds
   Verdict verdict = Verdict::failed;

@@ -57,7 +57,9 @@ class Solver {
   virtual Status can(const ProblemSummary& problem) const noexcept = 0;
   virtual Status solve(Problem& problem, Span<const double> start, const SolverContext& context,
                        SolverResult& out) noexcept = 0;
-  /// Lends the last factorization: solves the KKT system at the result for a right-hand side of n + m numbers.
+  /// Lends the KKT system at the last result: (a, b) → (δ, λ), n + m numbers each, W δ + Jᵀλ = a and J δ = b of the
+  /// rows that are active, λ = 0 of the others. The problem of that solve has to be there still, in the epoch it ended
+  /// in.
   virtual Status solve_kkt(Span<const double> right_hand_side, Span<double> out) noexcept {
     (void)right_hand_side;
     (void)out;

@@ -18,8 +18,9 @@ constexpr int no_slot = std::numeric_limits<int>::min();
 constexpr int most_in_row = 64;  // retained unknowns of one row
 // ρ, of the mean diagonal entry that the rows meet; 1 would cancel a negative one that a row reads alone.
 constexpr double row_weight = 2.0;
-constexpr double dual_slack = 1e-10;     // of 1/ρ
-constexpr double largest_growth = 1e12;  // beyond it the factor says nothing
+constexpr std::size_t part_size = 1 << 14;  // numbers of the matrix that are filled at a time
+constexpr double dual_slack = 1e-10;        // of 1/ρ
+constexpr double largest_growth = 1e12;     // beyond it the factor says nothing
 
 }  // namespace
 
@@ -39,6 +40,7 @@ void KktSystem::analyse(const Problem& problem, Span<const double> jacobian, Spa
   number_slots(problem);
   shape_matrix();
   list_entries();
+  sort_by_part();
   right_.assign(at(slots_ + ProfileMatrix::padding), 0.0);
   border_right_.assign(at(borders_), 0.0);
   work_a_.resize(at(n_));
@@ -250,48 +252,74 @@ void KktSystem::list_entries() {
   }
 }
 
+void KktSystem::sort_by_part() {
+  const int parts = static_cast<int>(matrix_.stored() / part_size) + 1;
+  const auto part_of = [](int target) { return std::max(target, 0) / static_cast<int>(part_size); };
+  const auto sort = [&](auto& items, std::vector<int>& begin, auto&& first_target) {
+    begin.assign(at(parts) + 1, 0);
+    for (const auto& item : items) ++begin[at(part_of(first_target(item)) + 1)];
+    for (int part = 0; part < parts; ++part) begin[at(part) + 1] += begin[at(part)];
+    if (parts == 1) return;
+    auto sorted = items;
+    std::vector<int> next = begin;
+    for (const auto& item : items) sorted[at(next[at(part_of(first_target(item)))]++)] = item;
+    items.swap(sorted);
+  };
+  sort(direct_, direct_begin_, [](const Direct& item) { return item.target; });
+  sort(pairs_, pair_begin_, [&](const Pair& item) { return pair_target_[at(item.first_target)]; });
+  sort(mixed_, mixed_begin_, [&](const Mixed& item) { return mixed_target_[at(item.first_target)]; });
+}
+
 void KktSystem::add_hessian(Span<const double> w) {
-  for (const Direct& entry : direct_) cell(entry.target) += w[at(entry.entry)];
-  for (const Pair& pair : pairs_) {
-    const LocalBlock& b1 = local_.blocks()[at(pair.first)];
-    const LocalBlock& b2 = local_.blocks()[at(pair.second)];
-    const double* a1 = local_.a(b1);
-    const double* a2 = local_.a(b2);
-    const int* entry = pair_entry_.data() + pair.first_entry;
-    const int* where = pair_target_.data() + pair.first_target;
-    double half[LocalElimination::most_rows][24];
-    for (int i = 0; i < b1.locals; ++i) {
-      std::fill_n(half[i], b2.retained, 0.0);
-      for (int j = 0; j < b2.locals; ++j) {
-        const int k = entry[i * b2.locals + j];
-        if (k < 0) continue;
-        const double value = w[at(k)];
-        for (int b = 0; b < b2.retained; ++b) half[i][b] += value * a2[j * b2.retained + b];
-      }
+  for (std::size_t part = 0; part + 1 < direct_begin_.size(); ++part) {
+    for (int k = direct_begin_[part]; k < direct_begin_[part + 1]; ++k) {
+      cell(direct_[at(k)].target) += w[at(direct_[at(k)].entry)];
     }
-    const bool same = pair.first == pair.second;
-    for (int a = 0; a < b1.retained; ++a) {
-      const int end = same ? a + 1 : b2.retained;
-      for (int b = 0; b < end; ++b) {
-        double sum = 0.0;
-        for (int i = 0; i < b1.locals; ++i) sum += a1[i * b1.retained + a] * half[i][b];
-        const bool diagonal = !same && local_.retained(b1)[a] == local_.retained(b2)[b];
-        cell(*where++) += diagonal ? 2.0 * sum : sum;
-      }
+    for (int k = pair_begin_[part]; k < pair_begin_[part + 1]; ++k) add_pair(pairs_[at(k)], w);
+    for (int k = mixed_begin_[part]; k < mixed_begin_[part + 1]; ++k) add_mixed(mixed_[at(k)], w);
+  }
+}
+
+void KktSystem::add_pair(const Pair& pair, Span<const double> w) {
+  const LocalBlock& b1 = local_.blocks()[at(pair.first)];
+  const LocalBlock& b2 = local_.blocks()[at(pair.second)];
+  const double* a1 = local_.a(b1);
+  const double* a2 = local_.a(b2);
+  const int* entry = pair_entry_.data() + pair.first_entry;
+  const int* where = pair_target_.data() + pair.first_target;
+  double half[LocalElimination::most_rows][24];
+  for (int i = 0; i < b1.locals; ++i) {
+    std::fill_n(half[i], b2.retained, 0.0);
+    for (int j = 0; j < b2.locals; ++j) {
+      const int k = entry[i * b2.locals + j];
+      if (k < 0) continue;
+      const double value = w[at(k)];
+      for (int b = 0; b < b2.retained; ++b) half[i][b] += value * a2[j * b2.retained + b];
     }
   }
-  for (const Mixed& mixed : mixed_) {
-    const LocalBlock& block = local_.blocks()[at(mixed.block)];
-    const double* a = local_.a(block);
-    const int* where = mixed_target_.data() + mixed.first_target;
-    for (int p = 0; p < block.retained; ++p, ++where) {
+  const bool same = pair.first == pair.second;
+  for (int a = 0; a < b1.retained; ++a) {
+    const int end = same ? a + 1 : b2.retained;
+    for (int b = 0; b < end; ++b) {
       double sum = 0.0;
-      for (int l = 0; l < block.locals; ++l) {
-        const int k = mixed_entry_[at(mixed.first_entry + l)];
-        if (k >= 0) sum -= a[l * block.retained + p] * w[at(k)];
-      }
-      cell(*where) += local_.retained(block)[p] == mixed.unknown ? 2.0 * sum : sum;
+      for (int i = 0; i < b1.locals; ++i) sum += a1[i * b1.retained + a] * half[i][b];
+      const bool diagonal = !same && local_.retained(b1)[a] == local_.retained(b2)[b];
+      cell(*where++) += diagonal ? 2.0 * sum : sum;
     }
+  }
+}
+
+void KktSystem::add_mixed(const Mixed& mixed, Span<const double> w) {
+  const LocalBlock& block = local_.blocks()[at(mixed.block)];
+  const double* a = local_.a(block);
+  const int* where = mixed_target_.data() + mixed.first_target;
+  for (int p = 0; p < block.retained; ++p, ++where) {
+    double sum = 0.0;
+    for (int l = 0; l < block.locals; ++l) {
+      const int k = mixed_entry_[at(mixed.first_entry + l)];
+      if (k >= 0) sum -= a[l * block.retained + p] * w[at(k)];
+    }
+    cell(*where) += local_.retained(block)[p] == mixed.unknown ? 2.0 * sum : sum;
   }
 }
 

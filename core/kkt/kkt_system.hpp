@@ -85,8 +85,12 @@ class KktSystem {
   void number_slots(const Problem& problem);
   void shape_matrix();
   void list_entries();
+  /// Puts what goes to the same part of the matrix together, since a fine mesh's does not fit into a cache.
+  void sort_by_part();
   void assemble(const Values& values);
   void add_hessian(Span<const double> w);
+  void add_pair(const Pair& pair, Span<const double> w);
+  void add_mixed(const Mixed& mixed, Span<const double> w);
   void add_row(const double* slot_value, double factor);
   int reduced_row(int row, Span<const double> jacobian, int* slot, double* value) const noexcept;
   void add_outer(const int* slot, const double* value, int count, double factor) noexcept;
@@ -113,6 +117,7 @@ class KktSystem {
   std::vector<Entry> mixed_entries_;
   std::vector<Pair> pairs_;
   std::vector<Mixed> mixed_;
+  std::vector<int> direct_begin_, pair_begin_, mixed_begin_;  // of each part of the matrix
   std::vector<int> partner_of_block_;
   std::vector<Partner> next_partner_;
   std::vector<int> pair_entry_, pair_target_, mixed_entry_, mixed_target_;

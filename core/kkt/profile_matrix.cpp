@@ -59,26 +59,10 @@ void ProfileMatrix::shape(std::vector<int> last) {
   }
   values_.assign(at(stored), 0.0);
   reach_.resize(last_.size());
-  first_.resize(last_.size());
   pivot_.resize(last_.size());
 }
 
 void ProfileMatrix::clear() noexcept { std::fill(values_.begin(), values_.end(), 0.0); }
-
-void ProfileMatrix::find_reach() noexcept {
-  int before = 0;
-  for (int c = 0; c < size(); ++c) {
-    const double* column = values_.data() + begin_[at(c)] - c;
-    int row = last_[at(c)];
-    while (row > c && row > before && column[row] == 0.0) --row;
-    before = reach_[at(c)] = std::max(row, before);
-  }
-  int column = 0;
-  for (int row = 0; row < size(); ++row) {
-    while (reach_[at(column)] < row) ++column;
-    first_[at(row)] = column;
-  }
-}
 
 // Wider vectors where the machine has them: the same operations on each number, and so the same bits ("avx2" allows no
 // fused ones).
@@ -88,13 +72,19 @@ void ProfileMatrix::find_reach() noexcept {
 PivotReport
 ProfileMatrix::factor() noexcept {
   PivotReport report;
-  find_reach();
   double largest = 0.0, growth = 0.0;
+  int first = 0;  // column that reaches the row in hand
   for (int c = 0; c < size(); ++c) largest = std::max(largest, std::fabs(values_[at(begin_[at(c)])]));
   for (int c = 0; c < size(); ++c) {
     double* target = values_.data() + begin_[at(c)] - c;
     const double original = target[c];
-    int j = first_[at(c)];
+    // Entries that are zero at the column's lower end cost nothing; a factor fills what an earlier column reaches.
+    int row = last_[at(c)];
+    const int filled = c > 0 ? reach_[at(c - 1)] : 0;
+    while (row > c && row > filled && target[row] == 0.0) --row;
+    reach_[at(c)] = std::max(row, filled);
+    while (reach_[at(first)] < c) ++first;
+    int j = first;
     const auto source = [&](int column) { return values_.data() + begin_[at(column)] - column; };
     const auto one = [&](int column) {
       const double* s = source(column);
@@ -122,9 +112,9 @@ ProfileMatrix::factor() noexcept {
     if (pivot < 0.0) ++report.negative;
     const double by_pivot = 1.0 / pivot_[at(c)];
     double steepest = 0.0;
-    for (int row = c + 1; row <= reach_[at(c)]; ++row) {
-      const double u = target[row];
-      target[row] = u * by_pivot;
+    for (int r = c + 1; r <= reach_[at(c)]; ++r) {
+      const double u = target[r];
+      target[r] = u * by_pivot;
       steepest = std::max(steepest, std::fabs(u));
     }
     growth = std::max(growth, steepest * steepest * std::fabs(by_pivot));

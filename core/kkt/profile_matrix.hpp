@@ -47,11 +47,9 @@ class ProfileMatrix {
   void solve(double* x) const noexcept;
 
  private:
-  void find_reach() noexcept;
-
   std::vector<int> last_, begin_;
   std::vector<double> values_;
-  std::vector<int> reach_, first_;  // of the factor: last row of a column, first column of a row
+  std::vector<int> reach_;  // of the factor: last row of a column
   std::vector<double> pivot_;
 };
 

@@ -1,5 +1,6 @@
 #include "plugins/sdk/plugin.hpp"
 #include "solvers/newton/hand_over.hpp"
+#include "solvers/newton/lent_system.hpp"
 #include "solvers/shared/backend.hpp"
 
 namespace bowstring {
@@ -50,6 +51,7 @@ class ActiveSet final : public Solver {
       std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
       const newton::Ending ending =
           newton::solve_by_hand_over(point, progress, {hand_overs, std::size(hand_overs)}, multipliers);
+      lent_.keep(problem, point.q, multipliers);
       out.q = point.q;
       out.multipliers = multipliers;
       out.claim = ending.claim;
@@ -57,8 +59,15 @@ class ActiveSet final : public Solver {
     });
   }
 
+  Status solve_kkt(Span<const double> right_hand_side, Span<double> out) noexcept override {
+    return guard([&] {
+      if (Status status = lent_.solve(right_hand_side, out); !status.ok()) throw StatusError(status);
+    });
+  }
+
  private:
   newton::Limits limits_;
+  newton::LentSystem lent_;
   double guard_ = 0.5;
 };
 

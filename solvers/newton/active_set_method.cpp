@@ -22,11 +22,11 @@ constexpr int few_changes = 2;
 constexpr double few_of_rows = 0.005;
 constexpr int most_changes_of_set = 6;  // at one point
 constexpr int refinements = 6;
-constexpr double refined = 1e-9;  // relative residual that no further refinement is spent on
+constexpr double refined = 1e-7;  // relative residual that no further refinement is spent on
 // Times the tolerance, and times the error before: then the last factors serve for one more step.
 constexpr double near_enough = 30.0, fast_enough = 1e-2;
-constexpr int patience = 7;          // steps that may pass without smaller errors
-constexpr double bound_share = 0.9;  // of the way to a bound of an unknown
+constexpr int patience = 3, patience_when_hasty = 7;  // steps that may pass without smaller errors
+constexpr double bound_share = 0.9;                   // of the way to a bound of an unknown
 constexpr double shortest_step = 1e-3;
 constexpr double pull = 1e-12;  // N: a predicted force so small may stay
 
@@ -213,7 +213,7 @@ Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
     const double worst = std::max(now.stationarity / target, now.violation / limits.tolerance);
     waited = worst < 0.5 * best ? 0 : waited + 1;
     best = std::min(best, worst);
-    if (waited > patience) return give_up("errors do not fall");
+    if (waited > (hasty_ ? patience_when_hasty : patience)) return give_up("errors do not fall");
     // Near the solution the last factors serve once more (a simplified Newton step).
     const bool again = factors_fit && settled && worst < near_enough && worst < fast_enough * before;
     before = worst;

@@ -1,10 +1,11 @@
 #include "solvers/newton/barrier_method.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
-#include "plugins/sdk/guard.hpp"
+#include "solvers/newton/restoration.hpp"
 
 namespace bowstring::newton {
 
@@ -15,19 +16,31 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double least_slack = 1e-2;  // mm, of a row at a cold start
 constexpr double bound_push = 1e-2;   // of its size (at least 1): how far inside its bound an unknown starts
+// mm and N mm: a scene that begins with large forces needs a barrier that can hold them off the walls.
+constexpr double barrier_of_pull = 0.02, most_first_barrier = 2.0;
 constexpr double rows_of_first_barrier = 100.0;
-constexpr double barrier_factor = 0.05, barrier_power = 1.7;
+constexpr double barrier_factor = 0.05, barrier_power = 1.5;
 constexpr double subproblem = 30.0;         // errors of a solved subproblem, in units of the barrier
 constexpr double boundary = 0.99;           // share of the way to a bound that a step may go
 constexpr double multiplier_spread = 1e10;  // of z s against μ
 constexpr int refinements = 3;
-constexpr double refined = 1e-9;  // relative residual that no further refinement is spent on
+constexpr double refined = 1e-7;  // relative residual that no further refinement is spent on
 // Of the filter's line search.
 constexpr double slope_power = 2.3, violation_power = 1.1, armijo = 1e-4, small_violation = 1e-4;
 constexpr double shortest_step = 1e-8;
 constexpr int most_shortenings = 40;
-constexpr int most_shifts = 6;  // of the Hessian, after line searches that found nothing
-constexpr int patience = 8;     // iterations without progress at the last barrier
+constexpr int most_shifts = 6;        // of the Hessian, after line searches that found nothing
+constexpr double first_retry = 1e-3;  // N/mm
+// A motion without curvature, as of a rod that slides along an arc, goes far for next to nothing: where a whole step
+// that is to win less than the tolerance (N mm) is refused, a shift of that share of it (N/mm) keeps the motion short.
+constexpr double neutral_shift = 1e3, most_neutral_shift = 1e5;
+constexpr int patience = 8;           // iterations without progress at the last barrier
+constexpr int rows_patience = 25;     // iterations without progress of rows that fail
+constexpr double progressing = 0.99;  // of a violation
+constexpr double far_apart = 1e-2;    // mm: rows that fail by more have to come closer
+constexpr double noticeable = 1e-5;   // mm: rows that fail by so little are left to Newton's steps
+constexpr double restored = 0.1;      // of the violation that a restoration begins with
+constexpr int most_restorations = 5;
 
 double shorter(double step, double travelled) {
   constexpr double allowed = 0.45, least = 0.1, most = 0.7;  // the guard stands at half a clearance
@@ -45,22 +58,13 @@ void BarrierMethod::set_up(Span<const double> start_multipliers) {
   equalities_ = equality_rows(problem_);
   row_share_ = std::min(1.0, rows_of_first_barrier / std::max<double>(1.0, static_cast<double>(sides_.size())));
   barrier_ = settings_.first_barrier;
+  if (!settings_.warm) {
+    const double pull = barrier_of_pull * point_.in_newtons(point_.gradient);
+    barrier_ = std::max(barrier_, std::min(pull, most_first_barrier));
+  }
   multipliers_.assign(at(problem_.rows()), 0.0);
   if (!start_multipliers.empty()) std::copy(start_multipliers.begin(), start_multipliers.end(), multipliers_.begin());
-  const double mu = barrier_of_row();
-  const double floor = settings_.warm ? std::sqrt(mu) : least_slack;
-  slack_.clear();
-  force_.clear();
-  for (const Side& side : sides_) {
-    const double slack = std::max(-side.violation(point_.rows[at(side.index)]), floor);
-    const double given = std::max(0.0, side.sign * multipliers_[at(side.index)]);
-    slack_.push_back(slack);
-    force_.push_back(settings_.warm && given > 0.0 ? std::max(given, mu / slack) : mu / slack);
-  }
-  read_bounds();
-  bound_force_.clear();
-  for (const double slack : bound_slack_) bound_force_.push_back(mu / slack);
-  combine_multipliers();
+  fill_slacks(settings_.warm);
   softness_.assign(at(problem_.rows()), 0.0);
   right_a_.resize(at(problem_.unknowns()));
   right_b_.resize(at(problem_.rows()));
@@ -71,6 +75,24 @@ void BarrierMethod::set_up(Span<const double> start_multipliers) {
   direction_.bound_force.resize(bounds_.size());
   trial_.q.resize(at(problem_.coordinates()));
   trial_.rows.resize(at(problem_.rows()));
+}
+
+/// From the point's rows, and where the start is warm from multipliers.
+void BarrierMethod::fill_slacks(bool warm) {
+  const double mu = barrier_of_row();
+  const double floor = warm ? std::sqrt(mu) : least_slack;
+  slack_.clear();
+  force_.clear();
+  for (const Side& side : sides_) {
+    const double slack = std::max(-side.violation(point_.rows[at(side.index)]), floor);
+    const double given = std::max(0.0, side.sign * multipliers_[at(side.index)]);
+    slack_.push_back(slack);
+    force_.push_back(warm && given > 0.0 ? std::max(given, mu / slack) : mu / slack);
+  }
+  read_bounds();
+  bound_force_.clear();
+  for (const double slack : bound_slack_) bound_force_.push_back(mu / slack);
+  combine_multipliers();
 }
 
 void BarrierMethod::read_bounds() {
@@ -248,45 +270,100 @@ double BarrierMethod::slope() const noexcept {
   return sum;
 }
 
+BarrierMethod::Verdict BarrierMethod::try_step(const std::vector<double>& delta, const std::vector<double>& slack,
+                                               double step) {
+  by_violation_ = false;
+  trial_failure_ = {};
+  for (std::size_t u = 0; u < scaled_.size(); ++u) scaled_[u] = step * delta[u];
+  problem_.retract(point_.q, scaled_, trial_.q);
+  trial_failure_ = point_.try_out(trial_.q, trial_.energy, trial_.rows);
+  if (!trial_failure_.ok()) return Verdict::no_trial;
+  for (std::size_t k = 0; k < sides_.size(); ++k) trial_.slack[k] = slack_[k] + step * slack[k];
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    trial_bound_slack_[k] = bound_slack_[k] - step * bounds_[k].sign * delta[at(bounds_[k].index)];
+  }
+  const double new_violation = violation(trial_.rows, trial_.slack);
+  const double new_objective = objective(trial_.energy, trial_.slack, trial_bound_slack_);
+  const bool by_objective = base_.slope < 0.0 &&
+                            base_.violation <= small_violation * std::max(1.0, largest_start_violation_) &&
+                            step * std::pow(-base_.slope, slope_power) > std::pow(base_.violation, violation_power);
+  const double rounding = 10.0 * std::numeric_limits<double>::epsilon() * std::fabs(base_.objective);
+  const bool enough = by_objective ? new_objective <= base_.objective + armijo * step * base_.slope + rounding
+                                   : Filter::improves(new_violation, new_objective, base_.violation, base_.objective);
+  if (enough && filter_.accepts(new_violation, new_objective)) {
+    if (!by_objective) filter_.add(base_.violation, base_.objective);
+    return Verdict::accepted;
+  }
+  by_violation_ = new_violation >= base_.violation;
+  return Verdict::refused;
+}
+
+bool BarrierMethod::correct(double step) {
+  std::fill(right_b_.begin(), right_b_.end(), 0.0);
+  for (const int r : equalities_) right_b_[at(r)] = problem_.row_lower()[at(r)] - trial_.rows[at(r)];
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const Side& side = sides_[k];
+    const double off = side.violation(trial_.rows[at(side.index)]) + trial_.slack[k];
+    right_b_[at(side.index)] -= softness_[at(side.index)] * side.sign * (force_[k] / slack_[k]) * off;
+  }
+  const std::vector<double> no_force(at(problem_.unknowns()), 0.0);
+  const auto start = std::chrono::steady_clock::now();
+  point_.system().solve(no_force, right_b_, {}, 1, corrected_delta_, correction_rows_);
+  progress_.result().factorization_seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (std::size_t k = 0; k < sides_.size(); ++k) {
+    const Side& side = sides_[k];
+    const double rate = side.sign * point_.row_rate(side.index, corrected_delta_);
+    const double off = side.violation(trial_.rows[at(side.index)]) + trial_.slack[k];
+    corrected_slack_[k] = step * direction_.slack[k] - off - rate;
+    if (!(slack_[k] + corrected_slack_[k] > (1.0 - boundary) * slack_[k])) return false;
+  }
+  for (std::size_t u = 0; u < corrected_delta_.size(); ++u) corrected_delta_[u] += step * direction_.delta[u];
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    const double change = -bounds_[k].sign * corrected_delta_[at(bounds_[k].index)];
+    if (!(bound_slack_[k] + change > (1.0 - boundary) * bound_slack_[k])) return false;
+  }
+  return try_step(corrected_delta_, corrected_slack_, 1.0) == Verdict::accepted;
+}
+
 double BarrierMethod::search(double longest) {
-  const double here_violation = violation(point_.rows, slack_);
-  const double here_objective = objective(point_.energy, slack_, bound_slack_);
-  const double descent = slope();
-  std::vector<double> scaled(direction_.delta.size()), bound_slack(bounds_.size());
+  base_ = {violation(point_.rows, slack_), objective(point_.energy, slack_, bound_slack_), slope()};
+  scaled_.resize(direction_.delta.size());
   trial_.slack.resize(sides_.size());
+  trial_bound_slack_.resize(bounds_.size());
+  corrected_delta_.resize(direction_.delta.size());
+  corrected_slack_.resize(sides_.size());
+  correction_rows_.resize(direction_.rows.size());
   double step = longest;
+  bool whole = true;
+  neutral_ = false;
   for (int shortenings = 0; shortenings < most_shortenings && step > shortest_step; ++shortenings) {
-    for (std::size_t u = 0; u < scaled.size(); ++u) scaled[u] = step * direction_.delta[u];
-    problem_.retract(point_.q, scaled, trial_.q);
-    const Status status = point_.try_out(trial_.q, trial_.energy, trial_.rows);
-    if (!status.ok()) {
-      if (status.code == Code::failed && shortenings > most_shortenings / 2) throw StatusError(status);
-      step = shorter(step, status.code == Code::refused ? problem_.travelled() : 0.0);
-      continue;
+    const Verdict verdict = try_step(direction_.delta, direction_.slack, step);
+    if (verdict == Verdict::accepted) return step;
+    if (verdict == Verdict::refused && whole && by_violation_ && correct(step)) return step;
+    if (verdict == Verdict::refused && whole && step == 1.0 && -base_.slope < progress_.limits().tolerance &&
+        base_.violation > 0.0 && inertia_.shift() < progress_.limits().tolerance * most_neutral_shift) {
+      neutral_ = true;
+      return 0.0;
     }
-    for (std::size_t k = 0; k < sides_.size(); ++k) trial_.slack[k] = slack_[k] + step * direction_.slack[k];
-    for (std::size_t k = 0; k < bounds_.size(); ++k) {
-      bound_slack[k] = bound_slack_[k] - step * bounds_[k].sign * direction_.delta[at(bounds_[k].index)];
-    }
-    const double new_violation = violation(trial_.rows, trial_.slack);
-    const double new_objective = objective(trial_.energy, trial_.slack, bound_slack);
-    const bool by_objective = descent < 0.0 &&
-                              here_violation <= small_violation * std::max(1.0, largest_start_violation_) &&
-                              step * std::pow(-descent, slope_power) > std::pow(here_violation, violation_power);
-    const double rounding = 10.0 * std::numeric_limits<double>::epsilon() * std::fabs(here_objective);
-    const bool enough = by_objective ? new_objective <= here_objective + armijo * step * descent + rounding
-                                     : Filter::improves(new_violation, new_objective, here_violation, here_objective);
-    if (enough && filter_.accepts(new_violation, new_objective)) {
-      if (!by_objective) filter_.add(here_violation, here_objective);
-      return step;
-    }
-    step *= 0.5;
+    whole = false;
+    step = verdict == Verdict::no_trial
+               ? shorter(step, trial_failure_.code == Code::refused ? problem_.travelled() : 0.0)
+               : 0.5 * step;
   }
   return 0.0;
 }
 
 bool BarrierMethod::take(double primal, double dual, Ending& ending) {
   point_.q.swap(trial_.q);
+  bool new_epoch = false;
+  Status status = point_.accept(new_epoch);
+  if (status.ok()) status = point_.expand();
+  if (!status.ok()) {
+    point_.q.swap(trial_.q);
+    ending = {Claim::failed, status.text.empty() ? "an accepted point could not be evaluated" : status.text};
+    return false;
+  }
   slack_.swap(trial_.slack);
   const double mu = barrier_of_row();
   const auto keep_near_path = [&](double& force, double slack) {
@@ -303,19 +380,51 @@ bool BarrierMethod::take(double primal, double dual, Ending& ending) {
     keep_near_path(bound_force_[k], bound_slack_[k]);
   }
   combine_multipliers();
-  bool new_epoch = false;
-  Status status = point_.accept(new_epoch);
-  if (status.ok()) status = point_.expand();
-  if (!status.ok()) {
-    ending = {Claim::failed, status.text.empty() ? "an accepted point could not be evaluated" : status.text};
+  return true;
+}
+
+bool BarrierMethod::restore(const std::string& why, Ending& ending) {
+  const double tolerance = progress_.limits().tolerance;
+  if (!(penetration() > noticeable)) {
+    const std::string rows = failing_rows(problem_, point_.rows, tolerance);
+    ending = {Claim::stalled, why + (rows.empty() ? "" : "; " + rows)};
     return false;
   }
+  if (restorations_ == most_restorations) {
+    ending = {Claim::stalled, why + ", though the rows have been brought together " + std::to_string(restorations_) +
+                                  " times; " + failing_rows(problem_, point_.rows, tolerance)};
+    return false;
+  }
+  ++restorations_;
+  double sum = 0.0;
+  for (int r = 0; r < problem_.rows(); ++r) sum += newton::violation(problem_, point_.rows, r);
+  Restoration restoration(point_, progress_);
+  const Ending found = restoration.run(restored * sum, multipliers_);
+  if (found.claim != Claim::optimal) {
+    ending = found.claim == Claim::stalled && progress_.reason().empty()
+                 ? Ending{found.claim, why + ": " + found.reason}
+                 : found;
+    return false;
+  }
+  point_.analyse_again();
+  inertia_ = {};
+  std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
+  barrier_ = std::max(barrier_, settings_.first_barrier);
+  fill_slacks(false);
+  fill_stationarity();
+  filter_.reset(std::max(least_slack, 10.0 * violation(point_.rows, slack_)));
   return true;
 }
 
 Ending BarrierMethod::run(std::vector<double>& multipliers) {
   const auto finish = [&](Ending ending) {
     multipliers = multipliers_;
+    // What is stuck while it grows has no bound to come to.
+    std::string reason;
+    const bool stuck = ending.claim == Claim::stalled && progress_.reason().empty();
+    if (stuck && growth_.unbounded(problem_, point_.q, point_.energy, reason, true)) {
+      ending = {Claim::diverged, reason + "; there " + ending.reason};
+    }
     return ending;
   };
   keep_inside();
@@ -332,13 +441,25 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
 
   const Limits& limits = progress_.limits();
   const double target = std::max(limits.tolerance, problem_.rounding_floor());
-  double best = infinity;
-  int waited = 0;
+  growth_.start(problem_, point_.q, point_.energy);
+  double best = infinity, least_violation = infinity;
+  int waited = 0, waited_for_rows = 0;
+  std::vector<double> best_q, best_multipliers;
+  const auto finish_at_best = [&](const std::string& reason) {
+    if (!best_q.empty()) {
+      point_.q = best_q;
+      multipliers_ = best_multipliers;
+    }
+    return finish({Claim::stalled, reason});
+  };
   double step = 0.0;
   for (;;) {
     Errors of_problem = errors(0.0);
     if (!progress_.record(point_.energy, of_problem.stationarity, of_problem.violation, step)) {
-      return finish({Claim::stalled, progress_.reason()});
+      return finish_at_best(progress_.reason());
+    }
+    if (std::string reason; growth_.unbounded(problem_, point_.q, point_.energy, reason)) {
+      return finish({Claim::diverged, reason});
     }
     const bool last_barrier = barrier_ <= settings_.last_barrier / row_share_;
     if (last_barrier && of_problem.stationarity <= target && of_problem.violation <= limits.tolerance &&
@@ -349,8 +470,12 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
       const double worst = std::max({of_problem.stationarity / target, of_problem.violation / limits.tolerance,
                                      of_problem.complementarity / limits.tolerance});
       waited = worst < 0.5 * best ? 0 : waited + 1;
-      best = std::min(best, worst);
-      if (waited >= patience) return finish({Claim::stalled, "nothing improves any more"});
+      if (worst < best) {
+        best = worst;
+        best_q = point_.q;
+        best_multipliers = multipliers_;
+      }
+      if (waited >= patience) return finish_at_best("nothing improves any more");
     }
     // Solved subproblems lower the barrier, several times where the point allows it.
     for (;;) {
@@ -365,22 +490,60 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
       filter_.reset(1e4 * std::max(1.0, largest_start_violation_));
     }
 
+    Ending ending;
+    waited_for_rows = of_problem.violation > far_apart && !(of_problem.violation < progressing * least_violation)
+                          ? waited_for_rows + 1
+                          : 0;
+    if (waited_for_rows == 0) least_violation = of_problem.violation;
+    if (waited_for_rows > rows_patience) {
+      if (!restore("rows that fail come no closer", ending)) return finish(ending);
+      best = least_violation = infinity;
+      best_q.clear();
+      waited_for_rows = 0;
+      continue;
+    }
     status = point_.find_hessian(multipliers_);
     if (!status.ok()) return finish({Claim::failed, status.text});
     double length = 0.0;
     Step longest;
+    std::string why = "no step improves the point";
+    bool renewed = false;
     for (int shifts = 0; shifts <= most_shifts && length == 0.0; ++shifts) {
       if (shifts > 0) {
         status = point_.find_hessian(multipliers_);
         if (!status.ok()) return finish({Claim::failed, status.text});
       }
-      const double least_shift = shifts == 0 ? 0.0 : std::max(1e-3, 10.0 * inertia_.shift());
-      if (!find_direction(least_shift)) break;
+      const double least_shift =
+          shifts == 0 ? 0.0
+                      : std::max(neutral_ ? neutral_shift * limits.tolerance : first_retry, 10.0 * inertia_.shift());
+      trial_failure_ = {};
+      if (!find_direction(least_shift)) {
+        if (!renewed) {
+          // What was eliminated where it stands may no longer be what moves its rows.
+          renewed = true;
+          point_.analyse_again();
+          --shifts;
+          status = point_.find_hessian(multipliers_);
+          if (!status.ok()) return finish({Claim::failed, status.text});
+          continue;
+        }
+        const int row = inertia_.outcome().singular_row;
+        why =
+            row < 0 ? "no shift of the Hessian gives usable factors" : row_name(problem_, row) + " contradicts others";
+        break;
+      }
       longest = longest_step();
       length = search(longest.primal);
     }
-    if (length == 0.0) return finish({Claim::stalled, "no step improves the point"});
-    Ending ending;
+    if (length == 0.0) {
+      if (trial_failure_.code == Code::failed) return finish({Claim::failed, trial_failure_.text});
+      if (trial_failure_.code == Code::refused) why = "every trial step was refused, however short";
+      if (!restore(why, ending)) return finish(ending);
+      best = least_violation = infinity;
+      best_q.clear();
+      step = 0.0;
+      continue;
+    }
     if (!take(length, longest.dual, ending)) return finish(ending);
     fill_stationarity();
     step = length;

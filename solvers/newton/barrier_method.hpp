@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "solvers/newton/diagnosis.hpp"
 #include "solvers/newton/filter.hpp"
 #include "solvers/newton/inertia_correction.hpp"
 #include "solvers/newton/point.hpp"
@@ -25,6 +26,10 @@ struct BarrierSettings {
 /// whose steps solve KktSystem with e = s/z. What differs for wires in vessels: μ of a row is in proportion to the
 /// length of wire that it stands for, and a step may move no wire node further from its wall than the problem's guard
 /// allows (`Problem::travelled`).
+///
+/// A trial that the filter refuses for its violation is brought back to the rows once (a second-order correction).
+/// Where no step is found, or rows that fail come no closer, a Restoration brings them together, and the method goes on
+/// from there; where that cannot be, its claim is the answer.
 class BarrierMethod {
  public:
   BarrierMethod(Point& point, Progress& progress, const BarrierSettings& settings);
@@ -51,6 +56,7 @@ class BarrierMethod {
   };
 
   void set_up(Span<const double> start_multipliers);
+  void fill_slacks(bool warm);
   void keep_inside();
   void read_bounds();
   double barrier_of_row() const noexcept { return barrier_ * row_share_; }
@@ -66,7 +72,14 @@ class BarrierMethod {
   double slope() const noexcept;
   /// Finds an acceptable trial; its length or 0.
   double search(double longest);
+  enum class Verdict { accepted, refused, no_trial };
+  /// Tries point.q · Exp(step · delta) with slacks s + step · slack.
+  Verdict try_step(const std::vector<double>& delta, const std::vector<double>& slack, double step);
+  /// The trial of the whole step, with the error that it leaves in the rows solved for once more.
+  bool correct(double step);
   bool take(double primal, double dual, Ending& ending);
+  /// A point from which the method can go on; false: `ending` is its end.
+  bool restore(const std::string& why, Ending& ending);
 
   Point& point_;
   Progress& progress_;
@@ -78,11 +91,20 @@ class BarrierMethod {
   std::vector<int> equalities_;
   double barrier_ = 1.0, row_share_ = 1.0;
   double largest_start_violation_ = 0.0;
+  Growth growth_;
+  int restorations_ = 0;
   std::vector<double> slack_, force_;              // of row sides
   std::vector<double> bound_slack_, bound_force_;  // of unknowns' sides
   std::vector<double> multipliers_;                // m, all rows
   std::vector<double> stationarity_;               // n: ∇E + Jᵀλ − bounds' forces
   std::vector<double> softness_, right_a_, right_b_, unknown_value_;
+  struct Base {  // of one line search
+    double violation = 0.0, objective = 0.0, slope = 0.0;
+  } base_;
+  std::vector<double> scaled_, trial_bound_slack_, correction_rows_, corrected_delta_, corrected_slack_;
+  bool neutral_ = false;       // the last line search was given up for a shift
+  bool by_violation_ = false;  // the last trial was refused by a filter, and violates rows by more than the point
+  Status trial_failure_;       // of the last trial, where it could not be evaluated
   Direction direction_;
   Trial trial_;
 };

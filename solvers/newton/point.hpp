@@ -37,6 +37,9 @@ class Point {
 
   /// For the patterns of the current epoch, which are analysed when they are new.
   kkt::KktSystem& system();
+  /// It is analysed once more, with the present Jacobian, before it is next used: what was chosen far from here may fit
+  /// no longer.
+  void analyse_again() noexcept { analysed_ = false; }
 
  private:
   void fit_patterns();

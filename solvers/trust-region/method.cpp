@@ -27,9 +27,7 @@ constexpr double newton_share = 1e-6;            // of the energy: a decrease so
 constexpr double hopeless = 1e-10;               // of the violation: what is no decrease of it
 constexpr double little = 1e-3;                  // the same, where no step was found either
 constexpr double far = 100.0;                    // lengths of the scene, to where rows are linearly satisfied
-constexpr double unbounded = 1e3;                // sizes of the scene at the start
 constexpr double sign_share = 1e-5;              // of the target: a gradient that is none
-constexpr double alike = 1.0 + 1e-9;             // a row is named where it is worse than those before it
 constexpr int corrections = 2;
 constexpr double longest_correction = 0.5;  // of its step: beyond it another way back is tried
 constexpr double noticed = 0.99;            // of a violation: less is progress
@@ -92,7 +90,7 @@ Status Method::begin(std::vector<double>& multipliers) {
   subproblem_.analyse();
   radius_ = settings_.first_radius > 0.0 ? settings_.first_radius : first_share * metric_.length();
   start_energy_ = point_.energy;
-  start_extent_ = metric_.length();
+  growth_.start(problem_, point_.q, point_.energy);
   target_ = std::max(progress_.limits().tolerance, problem_.rounding_floor());
   filter_.reset(std::max(largest_violation_share * metric_.length(), 1.1 * violation(point_.rows)));
   newton_multipliers_ = multipliers.size() == m ? multipliers : std::vector<double>();
@@ -353,25 +351,6 @@ Status Method::take() {
   return status;
 }
 
-bool Method::diverges(std::string& reason) const {
-  const double extent = Metric::extent(point_.q);
-  if (!(extent > unbounded * start_extent_) || !(point_.energy < start_energy_)) return false;
-  reason = text("the energy falls without a bound: from %.6g to %.6g N mm while the scene grew from %.4g to %.4g mm",
-                start_energy_, point_.energy, start_extent_, extent);
-  // Of the real unknowns, lengths, one may be what grows.
-  std::vector<double> value(at(problem_.unknowns()));
-  problem_.values(point_.q, value);
-  const auto longest = std::max_element(value.begin(), value.end());
-  if (longest != value.end() && *longest > 0.1 * extent) {
-    const int unknown = static_cast<int>(longest - value.begin());
-    const Span<const int> order = problem_.order();
-    const bool whole = std::find(order.end() - problem_.border(), order.end(), unknown) != order.end();
-    reason +=
-        text("; the length of %s (unknown %d) is now %.4g mm", whole ? "a sliding wire" : "an edge", unknown, *longest);
-  }
-  return true;
-}
-
 /// N/mm: a curvature so small changes no force by more than the tolerance over 1 mm, and counts as none.
 double Method::least_curvature() const noexcept {
   return static_cast<double>(problem_.unknowns()) * progress_.limits().tolerance;
@@ -403,33 +382,9 @@ newton::Ending Method::at_stationary_point(bool& go_on) {
                leftmost.known ? leftmost.curvature : 0.0)};
 }
 
-std::string Method::failing_rows() const {
-  std::string out;
-  const double tolerance = progress_.limits().tolerance;
-  for (const RowGroup& group : problem_.summary().row_groups) {
-    int count = 0, worst = -1;
-    double largest = 0.0;
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const double off = std::fabs(point_.rows[at(r)] - problem_.row_lower()[at(r)]);
-      if (off > tolerance) ++count;
-      if (off > alike * largest) largest = off, worst = r;
-    }
-    if (count == 0) continue;
-    out += text("%s%d of %d rows of '%s' fail, row %d the most, by %.4g mm", out.empty() ? "" : "; ", count,
-                group.count, group.name.c_str(), worst - group.first, largest);
-    int place = 0;
-    for (const LocalRows& local : problem_.local_rows()) {
-      if (local.first_row < group.first) continue;
-      if (worst < local.first_row + local.rows && worst >= local.first_row) out += text(" (edge %d)", place);
-      ++place;
-    }
-  }
-  if (out.empty()) out = text("the rows fail by up to %.4g mm", violation_);
-  return out;
-}
-
 newton::Ending Method::infeasible(const char* why) const {
-  return {Claim::infeasible, std::string("the rows cannot hold together: ") + why + "; " + failing_rows()};
+  return {Claim::infeasible, std::string("the rows cannot hold together: ") + why + "; " +
+                                 newton::failing_rows(problem_, point_.rows, progress_.limits().tolerance)};
 }
 
 newton::Ending Method::without_step() const {
@@ -448,7 +403,7 @@ newton::Ending Method::without_step() const {
     if (!(here - left > little * here) || metric_.norm(normal_delta_) > far * metric_.length()) {
       return infeasible("no step brings them closer");
     }
-    reason += "; " + failing_rows();
+    reason += "; " + newton::failing_rows(problem_, point_.rows, progress_.limits().tolerance);
   }
   if (leaving_saddle_) reason += "; it is a saddle";
   return {Claim::stalled, reason};
@@ -474,13 +429,15 @@ newton::Ending Method::run(std::vector<double>& multipliers) {
     status = normal_.factor(usable);
     if (!status.ok()) return finish({Claim::failed, status.text});
     if (!usable) {
-      return finish({Claim::stalled, "the rows' Jacobian has no usable factors; " + failing_rows()});
+      return finish({Claim::stalled, "the rows' Jacobian has no usable factors; " +
+                                         newton::failing_rows(problem_, point_.rows, progress_.limits().tolerance)});
     }
     judge();
     if (!progress_.record(point_.energy, stationarity_, violation_, fraction)) {
       return finish({Claim::stalled, progress_.reason()});
     }
-    if (std::string reason; diverges(reason)) return finish({Claim::diverged, reason});
+    if (std::string reason; growth_.unbounded(problem_, point_.q, point_.energy, reason))
+      return finish({Claim::diverged, reason});
     status = point_.find_hessian(multipliers_);
     if (!status.ok()) return finish({Claim::failed, status.text});
     // Rows within the tolerance may still cost an energy that is not: Newton's steps soon mend that.

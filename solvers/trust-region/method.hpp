@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "solvers/newton/barrier_method.hpp"
+#include "solvers/newton/diagnosis.hpp"
 #include "solvers/newton/filter.hpp"
 #include "solvers/newton/point.hpp"
 #include "solvers/newton/progress.hpp"
@@ -68,11 +69,9 @@ class Method {
   bool improves_errors();
   Status take();
 
-  bool diverges(std::string& reason) const;
   double least_curvature() const noexcept;
   newton::Ending at_stationary_point(bool& go_on);
   newton::Ending without_step() const;
-  std::string failing_rows() const;
   newton::Ending infeasible(const char* why) const;
 
   newton::Point& point_;
@@ -84,7 +83,8 @@ class Method {
   Subproblem subproblem_;
   newton::Filter filter_;
   std::vector<newton::Side> bounds_;
-  double radius_ = 1.0, start_energy_ = 0.0, start_extent_ = 0.0;
+  newton::Growth growth_;
+  double radius_ = 1.0, start_energy_ = 0.0;
   double target_ = 0.0;  // N
   double stationarity_ = 0.0, violation_ = 0.0;
   bool leaving_saddle_ = false;

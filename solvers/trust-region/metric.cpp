@@ -1,7 +1,8 @@
 #include "solvers/trust-region/metric.hpp"
 
-#include <algorithm>
 #include <cmath>
+
+#include "solvers/newton/diagnosis.hpp"
 
 namespace bowstring::trust_region {
 
@@ -23,7 +24,7 @@ void Metric::set_up(const Problem& problem, Span<const double> q) {
     if (problem.stationarity_scale()[u] != 1.0) rotation[u] = 1;
     if (after[u] != before[u]) rotation[u] = 0;
   }
-  length_ = extent(q);
+  length_ = newton::extent(q);
   if (!(length_ > 0.0)) length_ = 1.0;
   const double arm = length_ / two_pi;
   weight_.resize(n);
@@ -36,12 +37,6 @@ double Metric::product(Span<const double> one, Span<const double> other) const n
   double sum = 0.0;
   for (std::size_t u = 0; u < weight_.size(); ++u) sum += weight_[u] * one[u] * other[u];
   return sum;
-}
-
-double Metric::extent(Span<const double> q) noexcept {
-  if (q.empty()) return 0.0;
-  const auto [low, high] = std::minmax_element(q.begin(), q.end());
-  return *high - *low;
 }
 
 }  // namespace bowstring::trust_region

@@ -18,9 +18,6 @@ class Metric {
   double norm(Span<const double> delta) const noexcept;
   double product(Span<const double> one, Span<const double> other) const noexcept;
 
-  /// Spread (mm) of the numbers in q: of positions, next to which those of rotations are small.
-  static double extent(Span<const double> q) noexcept;
-
  private:
   std::vector<double> weight_;
   double length_ = 1.0;

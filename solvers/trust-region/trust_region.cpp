@@ -1,4 +1,5 @@
 #include "plugins/sdk/plugin.hpp"
+#include "solvers/newton/lent_system.hpp"
 #include "solvers/shared/backend.hpp"
 #include "solvers/trust-region/method.hpp"
 
@@ -72,6 +73,7 @@ class TrustRegion final : public Solver {
       std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
       trust_region::Method method(point, progress, settings_);
       const newton::Ending ending = method.run(multipliers);
+      lent_.keep(problem, point.q, multipliers);
       out.q = point.q;
       out.multipliers = multipliers;
       out.claim = ending.claim;
@@ -79,8 +81,15 @@ class TrustRegion final : public Solver {
     });
   }
 
+  Status solve_kkt(Span<const double> right_hand_side, Span<double> out) noexcept override {
+    return guard([&] {
+      if (Status status = lent_.solve(right_hand_side, out); !status.ok()) throw StatusError(status);
+    });
+  }
+
  private:
   newton::Limits limits_;
+  newton::LentSystem lent_;
   trust_region::Settings settings_;
   double guard_ = 0.5;
 };

@@ -302,11 +302,11 @@ class Running(unittest.TestCase):
         self.assertEqual(grid.chosen_solvers(self.command, None), ["ipopt"])
 
     def test_the_tests_choice_of_solvers_and_scenes(self):
-        (only,) = grid_test.steps(["ipopt", "nlopt"], False)
+        (only,) = grid_test.steps(["ipopt", "nlopt"], False, False, "recheck")
         self.assertEqual(only[:6], ["--solver", "ipopt", "--every", "28", "--nodes", "20,40,80"])
         self.assertLessEqual(len(grid.choose_scenes(grid.parse(["bowstring", *only]))), 12)
         for full in (False, True):
-            native, both = grid_test.steps(["ipopt", "interior-point"], full)
+            native, both = grid_test.steps(["ipopt", "interior-point"], full, False, "recheck")
             self.assertNotIn("ipopt", native)
             self.assertIn("interior-point", both)
             chosen = grid.choose_scenes(grid.parse(["bowstring", *native]))

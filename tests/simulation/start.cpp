@@ -128,7 +128,7 @@ TEST_CASE("what stalled at a limit, or was stopped, goes on from its result") {
   const Folder folder;
   Simulation limited = small_planar();
   const double whole = iterations(solved(limited));
-  limited.set("solver.max-iterations", 8);
+  limited.set("solver.max-iterations", 6);
   const SimulationResult part = solved(limited);
   REQUIRE(part.status() == Verdict::stalled);
   REQUIRE(part.write(folder.file("part.json")).ok());

@@ -37,6 +37,7 @@ class RowProblem final : public Problem {
       for (int u = 0; u < unknowns(); ++u) inner_.push_back(u);
       begin_.push_back(static_cast<int>(inner_.size()));
     }
+    if (!rows_.empty()) summary_.row_groups.push_back({"rows", "", 0, static_cast<int>(rows_.size()), false});
   }
 
   /// Asked before every evaluation; anything but ok is passed on.
@@ -80,7 +81,11 @@ class RowProblem final : public Problem {
   }
   Status lagrangian_hessian(Span<const double> q, double energy_factor, Span<const double> multipliers,
                             Span<double> values) noexcept override {
-    return quadratic_.lagrangian_hessian(q, energy_factor, multipliers, values);
+    Status status = quadratic_.lagrangian_hessian(q, energy_factor, multipliers, values);
+    for (std::size_t r = 0; r < rows_.size() && !multipliers.empty(); ++r) {
+      for (double& value : values) value += 2.0 * rows_[r].square * multipliers[r];
+    }
+    return status;
   }
   void values(Span<const double> q, Span<double> out) const noexcept override { quadratic_.values(q, out); }
   void retract(Span<const double> q, Span<const double> delta, Span<double> out) const noexcept override {
