@@ -145,8 +145,9 @@ void judge_crossings(const Assembly& assembly, Certificate& out) {
     PairPenetration found;
     found.wire = pair.first;
     found.vessel = pair.second;
-    found.dense = contact::max_penetration_dense(wall, polyline, start);
-    found.crossing = contact::check_crossing(wall, polyline, start);
+    const contact::WallCheck checked = contact::check_wall(wall, polyline, start);
+    found.dense = checked.dense;
+    found.crossing = checked.crossing;
     if (found.crossing.crossed()) {
       const contact::Penetration& exit = found.crossing.exit;
       const auto segment = at(std::clamp(static_cast<int>(exit.vessel_coordinate), 0, vessel.view.nodes - 1));

@@ -33,6 +33,8 @@ struct Penetration {
 /// neighbourhood would find it inside of both. Beyond an end of the vessel the tube is taken to continue
 /// straight: only distance across it counts.
 ///
+/// Samples that lie inside by more than the wire can rise on its way to them are not looked at.
+///
 /// `start`: σ of the wire's first node where it is known; otherwise the globally nearest place.
 /// A NaN coordinate gives a NaN depth and its place.
 Penetration deepest_penetration(const Centerline& vessel, const WirePolyline& wire, int samples_per_segment,
@@ -60,5 +62,15 @@ struct CrossingCheck {
 /// The check by 20 parts of every chord.
 CrossingCheck check_crossing(const Centerline& vessel, const WirePolyline& wire,
                              std::optional<double> start = std::nullopt) noexcept;
+
+/// Both of the above.
+struct WallCheck {
+  Penetration dense;
+  CrossingCheck crossing;
+};
+
+/// Both in one walk along the wire.
+WallCheck check_wall(const Centerline& vessel, const WirePolyline& wire,
+                     std::optional<double> start = std::nullopt) noexcept;
 
 }  // namespace bowstring::contact

@@ -41,7 +41,7 @@ TEST_CASE("searches, derivatives and checks allocate nothing") {
       gap_derivatives(curve, x, shape, at, gradient, 1.0, hessian);
       sum += at.gap + globally_closest(curve, x, shape).gap + gradient[0] + hessian[0];
     }
-    sum += check_crossing(curve, wire).deepest.depth + tube_folds(curve).value;
+    sum += check_wall(curve, wire).dense.depth + tube_folds(curve).value;
   }
   const int after = allocations;
   REQUIRE(sum != 0.0);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "core/contact/gap.hpp"
@@ -28,7 +29,88 @@ double deepest_node(const Centerline& curve, const std::vector<double>& points) 
   return deepest;
 }
 
+/// The deepest of all samples, by a search at every one of them, each from the one before.
+Penetration deepest_of_all(const Centerline& curve, const WirePolyline& wire, int parts) {
+  Penetration out;
+  double sigma = 0.0;
+  const int d = curve.dimension;
+  for (int segment = 0; segment + 1 < wire.nodes; ++segment) {
+    for (int k = segment == 0 ? 0 : 1; k <= parts; ++k) {
+      const double t = static_cast<double>(k) / parts;
+      double x[3] = {};
+      for (int i = 0; i < d; ++i) {
+        const double* p = wire.points + segment * d + i;
+        x[i] = (1.0 - t) * p[0] + t * p[d];
+      }
+      const double radius = (1.0 - t) * wire.radius[segment] + t * wire.radius[segment + 1];
+      const GapShape shape{GapForm::squared, radius};
+      const bool first = segment == 0 && k == 0;
+      const ClosestPoint at = first ? globally_closest(curve, x, shape) : closest(curve, x, shape, whole(curve), sigma);
+      sigma = at.at.sigma();
+      const double depth = at.distance - at.clearance;
+      if (first || depth > out.depth) out = {depth, 0.0, segment, t, sigma, at.distance};
+    }
+  }
+  return out;
+}
+
+/// A wire of straight chords inside a tube, between its ends: `share` of the clearance from the middle, turning.
+std::vector<double> wavy_wire(const Tube& vessel, int nodes, double share, std::vector<double>& radius,
+                              std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Centerline curve = vessel.view(Interpolation::spline);
+  std::vector<double> points;
+  radius.clear();
+  const double phase = 3.0 * uniform(random);
+  for (int i = 0; i < nodes; ++i) {
+    const double sigma = 1.0 + (curve.segments() - 2.0) * i / (nodes - 1);
+    const CurvePoint q = evaluate(curve, coordinate(sigma, curve.nodes));
+    radius.push_back(0.4 + 0.1 * uniform(random));
+    const double off = share * (q.radius - radius.back()), turn = 0.4 * i + phase;
+    const double across[3] = {0.0, off * std::cos(turn), curve.dimension == 3 ? off * std::sin(turn) : 0.0};
+    for (int k = 0; k < curve.dimension; ++k) points.push_back(q.position[k] + across[k]);
+  }
+  return points;
+}
+
 }  // namespace
+
+TEST_CASE("what the walk passes by is not the deepest, and what it approximates on its way is exact in the end") {
+  std::mt19937 random(7);
+  int deep = 0;
+  for (const int dimension : {2, 3}) {
+    for (const int nodes : {15, 60, 400}) {
+      for (const double share : {0.0, 0.5, 0.95, 1.05}) {
+        CAPTURE(dimension);
+        CAPTURE(nodes);
+        CAPTURE(share);
+        const Tube vessel = crooked_tube(dimension, 40, random);
+        std::vector<double> radius;
+        const std::vector<double> points = wavy_wire(vessel, nodes, share, radius, random);
+        const WirePolyline wire{nodes, points.data(), radius.data()};
+        const Centerline curve = vessel.view(Interpolation::spline);
+        const WallCheck check = check_wall(curve, wire);
+        const Penetration dense = deepest_of_all(curve, wire, 16), deepest = deepest_of_all(curve, wire, 20);
+        REQUIRE(dense.depth != 0.0);
+        deep += dense.depth > -0.5 ? 1 : 0;
+        CHECK(check.dense.depth == doctest::Approx(dense.depth).epsilon(1e-13));
+        CHECK(check.dense.segment == dense.segment);
+        CHECK(check.dense.t == dense.t);
+        CHECK(check.dense.vessel_coordinate == doctest::Approx(dense.vessel_coordinate).epsilon(1e-12));
+        CHECK(check.dense.distance == doctest::Approx(dense.distance).epsilon(1e-13));
+        CHECK(check.crossing.deepest.depth == doctest::Approx(deepest.depth).epsilon(1e-13));
+        CHECK(check.crossing.deepest.segment == deepest.segment);
+        CHECK(check.crossing.deepest.t == deepest.t);
+        const CrossingCheck alone = check_crossing(curve, wire);
+        CHECK(alone.deepest.depth == doctest::Approx(deepest.depth).epsilon(1e-13));
+        CHECK(alone.crossed() == check.crossing.crossed());
+        CHECK(alone.allowance == check.crossing.allowance);
+        CHECK(max_penetration_dense(curve, wire).depth == doctest::Approx(dense.depth).epsilon(1e-13));
+      }
+    }
+  }
+  CHECK(deep > 4);
+}
 
 TEST_CASE("a zigzag wire that leaves the tube between its nodes is found, with amount and place") {
   const double bend = 30.0, radius = 5.0, turn = 0.4;
