@@ -15,7 +15,6 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int no_slot = std::numeric_limits<int>::min();
-constexpr int most_in_row = 64;  // retained unknowns of one row
 // ρ, of the mean diagonal entry that the rows meet; 1 would cancel a negative one that a row reads alone.
 constexpr double row_weight = 2.0;
 constexpr std::size_t part_size = 1 << 14;  // numbers of the matrix that are filled at a time
@@ -45,6 +44,8 @@ void KktSystem::analyse(const Problem& problem, Span<const double> jacobian, Spa
   border_right_.assign(at(borders_), 0.0);
   work_a_.resize(at(n_));
   work_b_.resize(at(m_));
+  left_a_.resize(at(n_));
+  left_b_.resize(at(m_));
   delta_.resize(at(n_));
   lambda_.resize(at(m_));
   start_.resize(at(n_));
@@ -144,17 +145,25 @@ void KktSystem::shape_matrix() {
     }
     if (own.low == own.high) couple(all);
   }
+  int longest = LocalElimination::most_retained;
   for (int r = 0; r < m_; ++r) {
     Reach row;
+    int length = 0;
     for (int k = jacobian_.begin[at(r)]; k < jacobian_.begin[at(r) + 1]; ++k) {
-      add_unknown(row, jacobian_.inner[at(k)]);
+      const int unknown = jacobian_.inner[at(k)];
+      add_unknown(row, unknown);
+      const int block = local_.block_of_unknown(unknown);
+      length += block < 0 ? 1 : local_.blocks()[at(block)].retained;
     }
+    longest = std::max(longest, length);
     const int block = local_.block_of_row(r);
     const int first = block < 0 ? r : local_.blocks()[at(block)].first_row;
     const int count = block < 0 ? 1 : local_.blocks()[at(block)].left();
     for (int k = 0; exact_[at(r)] != 0 && k < count; ++k) row.add(slot_of_row_[at(first + k)]);
     couple(row);
   }
+  row_slot_.resize(at(longest));
+  row_value_.resize(at(longest));
   matrix_.shape(std::move(last));
   border_values_.assign(at(borders_ * slots_ + borders_ * borders_), 0.0);
 }
@@ -287,7 +296,7 @@ void KktSystem::add_pair(const Pair& pair, Span<const double> w) {
   const double* a2 = local_.a(b2);
   const int* entry = pair_entry_.data() + pair.first_entry;
   const int* where = pair_target_.data() + pair.first_target;
-  double half[LocalElimination::most_rows][24];
+  double half[LocalElimination::most_rows][LocalElimination::most_retained];
   for (int i = 0; i < b1.locals; ++i) {
     std::fill_n(half[i], b2.retained, 0.0);
     for (int j = 0; j < b2.locals; ++j) {
@@ -334,7 +343,6 @@ int KktSystem::reduced_row(int row, Span<const double> jacobian, int* slot, doub
         return;
       }
     }
-    if (count == most_in_row) return;
     slot[count] = s;
     value[count++] = number;
   };
@@ -347,7 +355,6 @@ int KktSystem::reduced_row(int row, Span<const double> jacobian, int* slot, doub
       plain = false;
       continue;
     }
-    if (count == most_in_row) continue;
     slot[count] = slot_of_unknown_[at(unknown)];
     value[count++] = number;
   }
@@ -392,8 +399,8 @@ void KktSystem::assemble(const Values& values) {
   matrix_.clear();
   std::fill(border_values_.begin(), border_values_.end(), 0.0);
   add_hessian(values.hessian);
-  int slot[most_in_row];
-  double value[most_in_row];
+  int* slot = row_slot_.data();
+  double* value = row_value_.data();
   for (int r = 0; r < m_; ++r) {
     if (exact_[at(r)] != 0) continue;
     const double e = values.softness[at(r)];
@@ -659,7 +666,7 @@ double KktSystem::residual(Span<const double> a, Span<const double> b, Span<cons
     }
     ra[j] -= sum;
   }
-  double largest = 0.0;
+  double rows = 0.0;
   for (int r = 0; r < m_; ++r) {
     double sum = b[at(r)];
     const double multiplier = lambda[at(r)];
@@ -675,16 +682,13 @@ double KktSystem::residual(Span<const double> a, Span<const double> b, Span<cons
       sum = std::isfinite(soft) ? sum + e * multiplier : 0.0;
     }
     rb[r] = sum;
-    largest = std::max(largest, std::fabs(sum));
+    rows = std::max(rows, std::fabs(sum));
   }
   double pull = 0.0;
   for (int u = 0; u < n_; ++u) pull = std::max(pull, std::fabs(ra[u]) / scale_[at(u)]);
   double size_a = 1e-300, size_b = 1e-300;
   for (int u = 0; u < n_; ++u) size_a = std::max(size_a, std::fabs(a[at(u)]) / scale_[at(u)]);
   for (int r = 0; r < m_; ++r) size_b = std::max(size_b, std::fabs(b[at(r)]));
-  (void)largest;
-  double rows = 0.0;
-  for (int r = 0; r < m_; ++r) rows = std::max(rows, std::fabs(rb[r]));
   return std::max(pull / size_a, size_b > 1e-299 ? rows / size_b : rows);
 }
 
@@ -692,11 +696,10 @@ double KktSystem::solve(Span<const double> a, Span<const double> b, Span<const d
                         Span<double> delta, Span<double> lambda, double enough) {
   solve_once(a.data(), b.data(), delta.data(), lambda.data());
   double before = residual(a, b, exactness, delta, lambda);
-  std::vector<double> ra(at(n_)), rb(at(m_));
   for (int k = 0; k < refinements && before > enough; ++k) {
-    std::copy(work_a_.begin(), work_a_.end(), ra.begin());
-    std::copy(work_b_.begin(), work_b_.end(), rb.begin());
-    solve_once(ra.data(), rb.data(), delta_.data(), lambda_.data());
+    std::copy(work_a_.begin(), work_a_.end(), left_a_.begin());
+    std::copy(work_b_.begin(), work_b_.end(), left_b_.begin());
+    solve_once(left_a_.data(), left_b_.data(), delta_.data(), lambda_.data());
     for (int u = 0; u < n_; ++u) delta[at(u)] += delta_[at(u)];
     for (int r = 0; r < m_; ++r) lambda[at(r)] += lambda_[at(r)];
     const double now = residual(a, b, exactness, delta, lambda);

@@ -24,9 +24,6 @@ namespace bowstring::kkt {
 /// eigenvalues of W on the null space of the rows that hold exactly.
 class KktSystem {
  public:
-  /// How a row enters.
-  enum class Row : char { exact, soft, off };
-
   /// Patterns and order of the problem's epoch; `jacobian` decides which local unknowns are eliminated. Equality rows
   /// are exact, and those marked in `held` (m, or none); others are soft or off. Allocates.
   void analyse(const Problem& problem, Span<const double> jacobian, Span<const char> held = {});
@@ -124,7 +121,9 @@ class KktSystem {
   double weight_ = 0.0;  // ρ
   double slack_ = 0.0;   // dual regularisation of exact rows
   Values values_;
-  std::vector<double> right_, border_right_, work_a_, work_b_, delta_, lambda_, start_;
+  std::vector<double> right_, border_right_, work_a_, work_b_, left_a_, left_b_, delta_, lambda_, start_;
+  std::vector<int> row_slot_;  // of one row at a time: as many as its longest has
+  std::vector<double> row_value_;
 };
 
 }  // namespace bowstring::kkt

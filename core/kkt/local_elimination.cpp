@@ -12,7 +12,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double felt = 1e-3;  // of the steepest local unknown: less at the start is no way to satisfy a row
 constexpr double lost = 1e-6;  // the same, later
-constexpr int most_retained = 24, most_candidates = 8, most_reads = 16;
+constexpr int most_candidates = 8, most_reads = 16;
 
 }  // namespace
 
@@ -145,7 +145,7 @@ namespace {
 /// Jacobian rows of one place: of its local unknowns, of the retained ones, and Qᵀ.
 struct Rows {
   static constexpr int most = LocalElimination::most_rows;
-  double local[most][most] = {}, rest[most][most_retained] = {}, q[most][most] = {};
+  double local[most][most] = {}, rest[most][LocalElimination::most_retained] = {}, q[most][most] = {};
 };
 
 /// Householder's reflections of the first `locals` columns, applied to everything and gathered in Qᵀ. With sizes known

@@ -21,7 +21,7 @@ struct LocalBlock {
 
 class LocalElimination {
  public:
-  static constexpr int most_rows = 4;
+  static constexpr int most_rows = 4, most_retained = 24;
 
   /// Chooses each place's local unknowns at these values: those of the problem's that its rows feel (not the turn about
   /// an edge's own axis). Allocates.
