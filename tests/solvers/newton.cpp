@@ -14,8 +14,7 @@
 #include "solvers/newton/inertia_correction.hpp"
 #include "solvers/newton/restoration.hpp"
 #include "solvers/newton/sides.hpp"
-#include "tests/assembly/small_scene.hpp"
-#include "tests/solvers/row_problem.hpp"
+#include "tests/solvers/solver_case.hpp"
 
 namespace bowstring::testing {
 
@@ -23,11 +22,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-/// ½ (x − 3)² + ½ (y − 1)² + (z + 2)².
-const std::vector<double> stiffness = {1.0, 1.0, 2.0};
-const std::vector<double> rest = {3.0, 1.0, -2.0};
 const std::vector<double> origin = {0.0, 0.0, 0.0};
 
 struct Run {

@@ -6,11 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "core/composition/defaults.hpp"
-#include "core/interfaces/solver.hpp"
-#include "tests/assembly/small_scene.hpp"
-#include "tests/certificate/solved_scene.hpp"
-#include "tests/solvers/row_problem.hpp"
+#include "tests/solvers/solver_case.hpp"
 
 namespace bowstring::testing {
 
@@ -18,10 +14,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const char* const algorithms[] = {"slsqp", "mma", "ccsaq"};
-
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
-using OwnedSolver = std::unique_ptr<Solver, Destructor>;
 
 struct Keys {
   std::string algorithm = "slsqp";
@@ -31,58 +23,17 @@ struct Keys {
 };
 
 OwnedSolver make_solver(const Keys& keys) {
-  Status status;
-  const ComponentDescriptor* component = plugin_host().find(Kind::solver, "nlopt", status);
-  REQUIRE_MESSAGE(component != nullptr, status.text);
-  ParameterSet parameters = default_parameters(*component);
-  const auto value = [&](const char* key, ParameterType type) -> ParameterValue& {
-    for (ParameterValue& found : parameters.values) {
-      if (found.key == key) return found;
-    }
-    parameters.values.emplace_back();
-    parameters.values.back().key = key;
-    parameters.values.back().type = type;
-    return parameters.values.back();
-  };
-  value("algorithm", ParameterType::choice).text = keys.algorithm;
-  if (keys.time_limit > 0.0) value("time-limit", ParameterType::scalar).number = keys.time_limit;
-  if (keys.max_iterations > 0) value("max-iterations", ParameterType::integer).integer = keys.max_iterations;
-  if (keys.max_unknowns > 0) value("max-unknowns", ParameterType::integer).integer = keys.max_unknowns;
-  void* raw = nullptr;
-  status = component->create(parameters, &raw);
-  REQUIRE_MESSAGE(status.ok(), status.text);
-  return OwnedSolver(static_cast<Solver*>(raw), component->destroy);
+  return solver_plugin("nlopt", [&](const SetParameter& value) {
+    value("algorithm", ParameterType::choice).text = keys.algorithm;
+    if (keys.time_limit > 0.0) value("time-limit", ParameterType::scalar).number = keys.time_limit;
+    if (keys.max_iterations > 0) value("max-iterations", ParameterType::integer).integer = keys.max_iterations;
+    if (keys.max_unknowns > 0) value("max-unknowns", ParameterType::integer).integer = keys.max_unknowns;
+  });
 }
-
-struct Answer {
-  Status status;
-  SolverResult result;
-};
 
 Answer solve_problem(Problem& problem, const std::vector<double>& start, const Keys& keys = {},
                      const std::function<bool(const IterationRecord&)>& progress = {}) {
-  Answer answer;
-  SolverContext context;
-  context.on_iteration = progress;
-  answer.status = make_solver(keys)->solve(problem, start, context, answer.result);
-  return answer;
-}
-
-/// ½ (x − 3)² + ½ (y − 1)² + (z + 2)².
-const std::vector<double> stiffness = {1.0, 1.0, 2.0};
-const std::vector<double> rest = {3.0, 1.0, -2.0};
-
-/// A step of at most 0.4 from the last accepted point.
-Status within_reach(const RowProblem& problem, const std::vector<double>& q) {
-  double squared = 0.0;
-  for (std::size_t i = 0; i < q.size(); ++i) squared += (q[i] - problem.reference[i]) * (q[i] - problem.reference[i]);
-  return squared <= 0.16 ? Status{} : Status{Code::refused, {}};
-}
-
-void check_point(const std::vector<double>& q, const std::vector<double>& expected, double tolerance) {
-  REQUIRE(q.size() == expected.size());
-  REQUIRE(largest(expected) > 0.5);
-  CHECK(largest_difference(q, expected) <= tolerance);
+  return solve_with(*make_solver(keys), problem, start, progress);
 }
 
 }  // namespace
