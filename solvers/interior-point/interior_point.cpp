@@ -1,7 +1,6 @@
 #include "plugins/sdk/plugin.hpp"
 #include "solvers/newton/hand_over.hpp"
-#include "solvers/newton/lent_system.hpp"
-#include "solvers/shared/backend.hpp"
+#include "solvers/newton/native_backend.hpp"
 
 namespace bowstring {
 namespace {
@@ -23,19 +22,9 @@ constexpr double hand_overs[] = {1e-4, 1e-6};
 
 class InteriorPoint final : public Solver {
  public:
-  explicit InteriorPoint(const ParameterSet& parameters) {
-    limits_.tolerance = parameters.scalar("tolerance");
-    limits_.max_iterations = static_cast<int>(parameters.integer("max-iterations"));
-    limits_.time_limit = backend::time_limit(parameters);
-    guard_ = backend::step_guard(parameters);
-  }
+  explicit InteriorPoint(const ParameterSet& parameters) : backend_(parameters) {}
 
-  SolverTraits traits() const noexcept override {
-    SolverTraits traits;
-    traits.window_segments = 2;
-    traits.window_length = 0.0;
-    return traits;
-  }
+  SolverTraits traits() const noexcept override { return newton::NativeBackend::traits(); }
 
   Status can(const ProblemSummary& summary) const noexcept override {
     return guard([&] { backend::check_equalities("interior-point", summary); });
@@ -43,32 +32,19 @@ class InteriorPoint final : public Solver {
 
   Status solve(Problem& problem, Span<const double> start, const SolverContext& context,
                SolverResult& out) noexcept override {
-    return guard([&] {
-      const backend::Guarded guarded(problem, guard_);
-      newton::Point point(problem, out);
-      point.q.assign(start.begin(), start.end());
-      newton::Progress progress(limits_, context, out);
-      std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
-      const newton::Ending ending =
-          newton::solve_by_hand_over(point, progress, {hand_overs, std::size(hand_overs)}, multipliers);
-      lent_.keep(problem, point.q, multipliers);
-      out.q = point.q;
-      out.multipliers = multipliers;
-      out.claim = ending.claim;
-      out.reason = ending.reason;
-    });
+    return backend_.solve(
+        problem, start, context, out,
+        [](newton::Point& point, newton::Progress& progress, std::vector<double>& multipliers) {
+          return newton::solve_by_hand_over(point, progress, {hand_overs, std::size(hand_overs)}, multipliers);
+        });
   }
 
   Status solve_kkt(Span<const double> right_hand_side, Span<double> out) noexcept override {
-    return guard([&] {
-      if (Status status = lent_.solve(right_hand_side, out); !status.ok()) throw StatusError(status);
-    });
+    return backend_.solve_kkt(right_hand_side, out);
   }
 
  private:
-  newton::Limits limits_;
-  newton::LentSystem lent_;
-  double guard_ = 0.5;
+  newton::NativeBackend backend_;
 };
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "solvers/newton/active_set_method.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
-#include "plugins/sdk/guard.hpp"
+#include "solvers/newton/stopwatch.hpp"
 
 namespace bowstring::newton {
 
@@ -83,7 +82,6 @@ ActiveSetMethod::Errors ActiveSetMethod::errors(const std::vector<double>& multi
 }
 
 bool ActiveSetMethod::solve(const std::vector<double>& multipliers) {
-  const auto start = std::chrono::steady_clock::now();
   const double softness = std::max(last_softness, first_softness * std::pow(softening, steps_));
   for (const Side& side : sides_) softness_[at(side.index)] = infinity;
   for (std::size_t k = 0; k < sides_.size(); ++k) {
@@ -93,10 +91,12 @@ bool ActiveSetMethod::solve(const std::vector<double>& multipliers) {
   values.hessian = point_.hessian;
   values.jacobian = point_.jacobian;
   values.softness = softness_;
-  const kkt::KktSystem::Outcome outcome = point_.system().factor(values);
+  kkt::KktSystem::Outcome outcome;
+  {
+    const Stopwatch watch(progress_.result().factorization_seconds);
+    outcome = point_.system().factor(values);
+  }
   ++progress_.result().factorizations;
-  progress_.result().factorization_seconds +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!outcome.exists || outcome.saddle_directions != 0) return false;
   solve_again(multipliers, refinements);
   return true;
@@ -104,7 +104,7 @@ bool ActiveSetMethod::solve(const std::vector<double>& multipliers) {
 
 /// With the last factors.
 void ActiveSetMethod::solve_again(const std::vector<double>& multipliers, int most_refinements) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch(progress_.result().factorization_seconds);
   std::fill(right_b_.begin(), right_b_.end(), 0.0);
   for (const int r : equalities_) right_b_[at(r)] = problem_.row_lower()[at(r)] - point_.rows[at(r)];
   for (std::size_t k = 0; k < sides_.size(); ++k) {
@@ -113,8 +113,6 @@ void ActiveSetMethod::solve_again(const std::vector<double>& multipliers, int mo
   point_.lagrangian_gradient(multipliers, stationarity_);
   for (std::size_t u = 0; u < right_a_.size(); ++u) right_a_[u] = -stationarity_[u];
   point_.system().solve(right_a_, right_b_, {}, most_refinements, delta_, change_, refined);
-  progress_.result().factorization_seconds +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 /// Rows whose predicted force pulls leave, rows whose predicted gap is positive enter. Returns how many did.
@@ -150,12 +148,11 @@ bool ActiveSetMethod::direction(std::vector<double>& multipliers) {
 
 double ActiveSetMethod::longest_step() const {
   double longest = 1.0;
-  std::vector<double> value(at(problem_.unknowns()));
-  if (!bounds_.empty()) problem_.values(point_.q, value);
-  for (const Side& bound : bounds_) {
-    const double room = -bound.violation(value[at(bound.index)]);
-    const double rate = bound.sign * delta_[at(bound.index)];
-    if (rate > 0.0) longest = std::min(longest, bound_share * std::max(room, 0.0) / rate);
+  std::vector<double> values, room;
+  read_room(problem_, bounds_, point_.q, values, room);
+  for (std::size_t k = 0; k < bounds_.size(); ++k) {
+    const double rate = bounds_[k].sign * delta_[at(bounds_[k].index)];
+    if (rate > 0.0) longest = std::min(longest, bound_share * std::max(room[k], 0.0) / rate);
   }
   return longest;
 }
@@ -178,18 +175,12 @@ bool ActiveSetMethod::step(std::vector<double>& multipliers, double& length) {
   return true;
 }
 
-bool ActiveSetMethod::accept(bool& new_epoch) {
-  if (!point_.accept(new_epoch).ok() || !point_.expand().ok()) return false;
-  return true;
-}
-
 Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
   const std::vector<double> start_q = point_.q, start_multipliers = multipliers;
   const auto give_up = [&](const char* reason) -> Ending {
     point_.q = start_q;
     multipliers = start_multipliers;
-    bool new_epoch = false;
-    if (!accept(new_epoch)) return {Claim::failed, "the start could not be evaluated again"};
+    if (!point_.arrive().ok()) return {Claim::failed, "the start could not be evaluated again"};
     return {Claim::stalled, reason};
   };
   const Limits& limits = progress_.limits();
@@ -228,7 +219,7 @@ Ending ActiveSetMethod::run(std::vector<double>& multipliers) {
     }
     if (!step(multipliers, length)) return give_up("the step guard stopped the step");
     bool new_epoch = false;
-    if (!accept(new_epoch)) return give_up("an accepted point could not be evaluated");
+    if (!point_.arrive(&new_epoch).ok()) return give_up("an accepted point could not be evaluated");
     if (new_epoch) factors_fit = false;
     settled = length == 1.0 && changes_ == 0;
     ++steps_;

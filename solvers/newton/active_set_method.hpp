@@ -42,7 +42,6 @@ class ActiveSetMethod {
   bool direction(std::vector<double>& multipliers);
   double longest_step() const;
   bool step(std::vector<double>& multipliers, double& length);
-  bool accept(bool& new_epoch);
 
   Point& point_;
   Progress& progress_;

@@ -1,11 +1,12 @@
 #include "solvers/newton/barrier_method.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "solvers/newton/restoration.hpp"
+#include "solvers/newton/step_length.hpp"
+#include "solvers/newton/stopwatch.hpp"
 
 namespace bowstring::newton {
 
@@ -24,7 +25,8 @@ constexpr double subproblem = 30.0;         // errors of a solved subproblem, in
 constexpr double boundary = 0.99;           // share of the way to a bound that a step may go
 constexpr double multiplier_spread = 1e10;  // of z s against μ
 constexpr int refinements = 3;
-constexpr double refined = 1e-7;  // relative residual that no further refinement is spent on
+// Relative residuals that no further refinement is spent on: of a step, and of a correction.
+constexpr double refined = 1e-7, fully_refined = 1e-13;
 // Of the filter's line search.
 constexpr double slope_power = 2.3, violation_power = 1.1, armijo = 1e-4, small_violation = 1e-4;
 constexpr double shortest_step = 1e-8;
@@ -41,11 +43,6 @@ constexpr double far_apart = 1e-2;    // mm: rows that fail by more have to come
 constexpr double noticeable = 1e-5;   // mm: rows that fail by so little are left to Newton's steps
 constexpr double restored = 0.1;      // of the violation that a restoration begins with
 constexpr int most_restorations = 5;
-
-double shorter(double step, double travelled) {
-  constexpr double allowed = 0.45, least = 0.1, most = 0.7;  // the guard stands at half a clearance
-  return step * (travelled > 0.0 ? std::clamp(allowed / travelled, least, most) : 0.5);
-}
 
 }  // namespace
 
@@ -95,32 +92,13 @@ void BarrierMethod::fill_slacks(bool warm) {
   combine_multipliers();
 }
 
-void BarrierMethod::read_bounds() {
-  problem_.values(point_.q, unknown_value_);
-  bound_slack_.clear();
-  for (const Side& side : bounds_) bound_slack_.push_back(-side.violation(unknown_value_[at(side.index)]));
-}
+void BarrierMethod::read_bounds() { read_room(problem_, bounds_, point_.q, unknown_value_, bound_slack_); }
 
 /// Moves unknowns that start on their bound, or beyond, to the inside.
 void BarrierMethod::keep_inside() {
-  unknown_value_.resize(at(problem_.unknowns()));
-  problem_.values(point_.q, unknown_value_);
-  std::vector<double> delta(at(problem_.unknowns()), 0.0);
-  bool any = false;
-  for (const Side& side : sides_of_unknowns(problem_)) {
-    const double lower = problem_.lower()[at(side.index)], upper = problem_.upper()[at(side.index)];
-    double push = bound_push * std::max(1.0, std::fabs(side.bound));
-    if (std::isfinite(lower) && std::isfinite(upper)) push = std::min(push, 0.25 * (upper - lower));
-    const double slack = -side.violation(unknown_value_[at(side.index)]);
-    const double least = std::min(push, 0.1 * std::max(std::fabs(side.bound), 1e-3));
-    if (slack >= least) continue;
-    delta[at(side.index)] = side.bound - side.sign * least - unknown_value_[at(side.index)];
-    any = true;
-  }
-  if (!any) return;
-  std::vector<double> moved(point_.q.size());
-  problem_.retract(point_.q, delta, moved);
-  point_.q = moved;
+  pull_inside(problem_, sides_of_unknowns(problem_), point_.q, [](const Side& side) {
+    return std::min(bound_push * std::max(1.0, std::fabs(side.bound)), 0.1 * std::max(std::fabs(side.bound), 1e-3));
+  });
 }
 
 double BarrierMethod::violation(const std::vector<double>& rows, const std::vector<double>& slack) const noexcept {
@@ -190,7 +168,9 @@ bool BarrierMethod::lower_barrier() {
   return true;
 }
 
-bool BarrierMethod::find_direction(double least_shift) {
+bool BarrierMethod::find_direction(double least_shift, Status& failure) {
+  failure = point_.find_hessian(multipliers_);
+  if (!failure.ok()) return false;
   const double mu = barrier_of_row();
   std::vector<double>& w = point_.hessian;
   const SparsityPattern pattern = problem_.hessian_pattern();
@@ -224,10 +204,7 @@ bool BarrierMethod::find_direction(double least_shift) {
   values.jacobian = point_.jacobian;
   values.softness = softness_;
   if (!inertia_.factor(point_.system(), values, least_shift, progress_.result())) return false;
-  const auto start = std::chrono::steady_clock::now();
-  point_.system().solve(right_a_, right_b_, {}, refinements, direction_.delta, direction_.rows, refined);
-  progress_.result().factorization_seconds +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  solve_system(right_a_, refinements, refined, direction_.delta, direction_.rows);
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     const Side& side = sides_[k];
     const double rate = side.sign * point_.row_rate(side.index, direction_.delta);
@@ -240,6 +217,12 @@ bool BarrierMethod::find_direction(double least_shift) {
     direction_.bound_force[k] = mu / bound_slack_[k] - bound_force_[k] - bound_force_[k] / bound_slack_[k] * change;
   }
   return true;
+}
+
+void BarrierMethod::solve_system(Span<const double> right, int most_refinements, double enough, Span<double> delta,
+                                 Span<double> rows) {
+  const Stopwatch watch(progress_.result().factorization_seconds);
+  point_.system().solve(right, right_b_, {}, most_refinements, delta, rows, enough);
 }
 
 BarrierMethod::Step BarrierMethod::longest_step() const noexcept {
@@ -307,10 +290,7 @@ bool BarrierMethod::correct(double step) {
     right_b_[at(side.index)] -= softness_[at(side.index)] * side.sign * (force_[k] / slack_[k]) * off;
   }
   const std::vector<double> no_force(at(problem_.unknowns()), 0.0);
-  const auto start = std::chrono::steady_clock::now();
-  point_.system().solve(no_force, right_b_, {}, 1, corrected_delta_, correction_rows_);
-  progress_.result().factorization_seconds +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  solve_system(no_force, 1, fully_refined, corrected_delta_, correction_rows_);
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     const Side& side = sides_[k];
     const double rate = side.sign * point_.row_rate(side.index, corrected_delta_);
@@ -347,19 +327,14 @@ double BarrierMethod::search(double longest) {
       return 0.0;
     }
     whole = false;
-    step = verdict == Verdict::no_trial
-               ? shorter(step, trial_failure_.code == Code::refused ? problem_.travelled() : 0.0)
-               : 0.5 * step;
+    step = verdict == Verdict::no_trial ? shortened(step, trial_failure_, problem_) : 0.5 * step;
   }
   return 0.0;
 }
 
 bool BarrierMethod::take(double primal, double dual, Ending& ending) {
   point_.q.swap(trial_.q);
-  bool new_epoch = false;
-  Status status = point_.accept(new_epoch);
-  if (status.ok()) status = point_.expand();
-  if (!status.ok()) {
+  if (Status status = point_.arrive(); !status.ok()) {
     point_.q.swap(trial_.q);
     ending = {Claim::failed, status.text.empty() ? "an accepted point could not be evaluated" : status.text};
     return false;
@@ -428,9 +403,7 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
     return ending;
   };
   keep_inside();
-  bool new_epoch = false;
-  Status status = point_.accept(new_epoch);
-  if (status.ok()) status = point_.expand();
+  Status status = point_.arrive();
   if (!status.ok())
     return {status.code == Code::failed ? Claim::failed : Claim::stalled,
             "the start cannot be evaluated: " + status.text};
@@ -502,29 +475,22 @@ Ending BarrierMethod::run(std::vector<double>& multipliers) {
       waited_for_rows = 0;
       continue;
     }
-    status = point_.find_hessian(multipliers_);
-    if (!status.ok()) return finish({Claim::failed, status.text});
     double length = 0.0;
     Step longest;
     std::string why = "no step improves the point";
     bool renewed = false;
     for (int shifts = 0; shifts <= most_shifts && length == 0.0; ++shifts) {
-      if (shifts > 0) {
-        status = point_.find_hessian(multipliers_);
-        if (!status.ok()) return finish({Claim::failed, status.text});
-      }
       const double least_shift =
           shifts == 0 ? 0.0
                       : std::max(neutral_ ? neutral_shift * limits.tolerance : first_retry, 10.0 * inertia_.shift());
       trial_failure_ = {};
-      if (!find_direction(least_shift)) {
+      if (!find_direction(least_shift, status)) {
+        if (!status.ok()) return finish({Claim::failed, status.text});
         if (!renewed) {
           // What was eliminated where it stands may no longer be what moves its rows.
           renewed = true;
           point_.analyse_again();
           --shifts;
-          status = point_.find_hessian(multipliers_);
-          if (!status.ok()) return finish({Claim::failed, status.text});
           continue;
         }
         const int row = inertia_.outcome().singular_row;

@@ -22,10 +22,7 @@ Ending solve_by_hand_over(Point& point, Progress& progress, Span<const double> b
     settings.first_barrier = warm_barrier;
   }
   if (settings.warm) {
-    bool new_epoch = false;
-    Status status = point.accept(new_epoch);
-    if (status.ok()) status = point.expand();
-    if (!status.ok()) throw StatusError(status);
+    if (Status status = point.arrive(); !status.ok()) throw StatusError(status);
     ActiveSetMethod method(point, progress, true);
     const Ending ending = method.run(multipliers);
     if (ending.claim != Claim::stalled || method.interrupted()) return ending;

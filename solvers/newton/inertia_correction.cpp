@@ -1,7 +1,8 @@
 #include "solvers/newton/inertia_correction.hpp"
 
 #include <algorithm>
-#include <chrono>
+
+#include "solvers/newton/stopwatch.hpp"
 
 namespace bowstring::newton {
 
@@ -15,7 +16,7 @@ constexpr double first_growth = 100.0, growth = 8.0, decay = 1.0 / 3.0;
 
 bool InertiaCorrection::factor(kkt::KktSystem& system, kkt::KktSystem::Values values, double least_shift,
                                SolverResult& count) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch(count.factorization_seconds);
   const auto attempt = [&](double shift) {
     values.shift = shift_ = shift;
     outcome_ = system.factor(values);
@@ -30,7 +31,6 @@ bool InertiaCorrection::factor(kkt::KktSystem& system, kkt::KktSystem::Values va
     if (!good) shift *= last_ == 0.0 ? first_growth : growth;
   }
   if (good && shifted) last_ = shift_;
-  count.factorization_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return good;
 }
 

@@ -1,8 +1,9 @@
 #include "solvers/newton/point.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+
+#include "solvers/newton/stopwatch.hpp"
 
 namespace bowstring::newton {
 
@@ -31,10 +32,8 @@ void Point::fit_patterns() {
 
 template <class Call>
 Status Point::timed(Call&& call) {
-  const auto start = std::chrono::steady_clock::now();
-  Status status = call();
-  count_.evaluation_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return status;
+  const Stopwatch watch(count_.evaluation_seconds);
+  return call();
 }
 
 Status Point::expand() {
@@ -69,6 +68,13 @@ Status Point::accept(bool& new_epoch) {
     fit_patterns();
     return {};
   });
+}
+
+Status Point::arrive(bool* new_epoch) {
+  bool begun = false;
+  Status status = accept(begun);
+  if (new_epoch != nullptr) *new_epoch = begun;
+  return status.ok() ? expand() : status;
 }
 
 void Point::lagrangian_gradient(Span<const double> multipliers, std::vector<double>& out) const {

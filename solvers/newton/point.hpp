@@ -21,6 +21,8 @@ class Point {
   Status find_hessian(Span<const double> multipliers);
   /// Makes q the accepted point, and begins an epoch where that is due (true) or asked for.
   Status accept(bool& new_epoch);
+  /// Both, the first one first: q becomes the point that the next step starts from.
+  Status arrive(bool* new_epoch = nullptr);
 
   std::vector<double> q;
   double energy = 0.0;

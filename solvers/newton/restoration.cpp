@@ -1,12 +1,12 @@
 #include "solvers/newton/restoration.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
 #include "solvers/newton/diagnosis.hpp"
+#include "solvers/newton/step_length.hpp"
 
 namespace bowstring::newton {
 
@@ -35,11 +35,6 @@ constexpr int most_sets = 4;  // of rows that a step would violate, at one point
 constexpr int refinements = 2, inverse_iterations = 10;
 constexpr double least_shift = 1e-9;  // N/mm: less curvature is none
 constexpr double off_saddle = 1.0;    // mm, the first trial along negative curvature
-
-double shorter(double step, double travelled) {
-  constexpr double allowed = 0.45, least = 0.1, most = 0.7;  // the guard stands at half a clearance
-  return step * (travelled > 0.0 ? std::clamp(allowed / travelled, least, most) : 0.5);
-}
 
 /// The same problem, of which no row is held exactly and no unknown belongs to a row.
 class Relaxed final : public Problem {
@@ -104,11 +99,8 @@ Restoration::Restoration(Point& point, Progress& progress)
 }
 
 void Restoration::read_bounds(const std::vector<double>& q, std::vector<double>& room) const {
-  room.clear();
-  if (bounds_.empty()) return;
-  std::vector<double> number(at(problem_.unknowns()));
-  problem_.values(q, number);
-  for (const Side& side : bounds_) room.push_back(-side.violation(number[at(side.index)]));
+  std::vector<double> number;
+  read_room(problem_, bounds_, q, number, room);
 }
 
 double Restoration::summed(const std::vector<double>& rows) const {
@@ -291,7 +283,7 @@ bool Restoration::search(double longest, bool along_curvature) {
     const Status status = point_.try_out(trial_q_, trial_energy_, trial_rows_);
     if (!status.ok()) {
       trial_failure_ = status;
-      step = shorter(step, status.code == Code::refused ? problem_.travelled() : 0.0);
+      step = shortened(step, status, problem_);
       continue;
     }
     trial_failure_ = {};
@@ -308,8 +300,7 @@ Status Restoration::take() {
   std::vector<double> before = trial_q_;
   point_.q.swap(before);
   bool new_epoch = false;
-  Status status = point_.accept(new_epoch);
-  if (status.ok()) status = point_.expand();
+  Status status = point_.arrive(&new_epoch);
   if (!status.ok()) {
     point_.q.swap(before);
     return status;

@@ -1,5 +1,6 @@
 #include "solvers/newton/sides.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace bowstring::newton {
@@ -39,6 +40,35 @@ std::vector<int> equality_rows(const Problem& problem) {
     }
   }
   return rows;
+}
+
+void read_room(const Problem& problem, const std::vector<Side>& sides, Span<const double> q,
+               std::vector<double>& values, std::vector<double>& out) {
+  out.clear();
+  if (sides.empty()) return;
+  values.resize(static_cast<std::size_t>(problem.unknowns()));
+  problem.values(q, values);
+  for (const Side& side : sides) out.push_back(-side.violation(values[static_cast<std::size_t>(side.index)]));
+}
+
+void pull_inside(const Problem& problem, const std::vector<Side>& sides, std::vector<double>& q,
+                 const std::function<double(const Side&)>& least) {
+  std::vector<double> values, room, delta(static_cast<std::size_t>(problem.unknowns()), 0.0);
+  read_room(problem, sides, q, values, room);
+  bool any = false;
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const auto unknown = static_cast<std::size_t>(sides[k].index);
+    double push = least(sides[k]);
+    const double between = problem.upper()[unknown] - problem.lower()[unknown];
+    if (std::isfinite(between)) push = std::min(push, 0.25 * between);
+    if (room[k] >= push) continue;
+    delta[unknown] = sides[k].bound - sides[k].sign * push - values[unknown];
+    any = true;
+  }
+  if (!any) return;
+  std::vector<double> moved(q.size());
+  problem.retract(q, delta, moved);
+  q = moved;
 }
 
 }  // namespace bowstring::newton

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/interfaces/problem.hpp"
@@ -17,5 +18,14 @@ struct Side {
 std::vector<Side> sides_of_rows(const Problem& problem);
 std::vector<Side> sides_of_unknowns(const Problem& problem);
 std::vector<int> equality_rows(const Problem& problem);
+
+/// out: how far each side of an unknown is from its bound at q. `values`: room for all unknowns' values.
+void read_room(const Problem& problem, const std::vector<Side>& sides, Span<const double> q,
+               std::vector<double>& values, std::vector<double>& out);
+
+/// Moves unknowns that are nearer to their bound than `least` of it, or beyond, to that distance inside; where there
+/// are two bounds, to no more than a quarter of what lies between.
+void pull_inside(const Problem& problem, const std::vector<Side>& sides, std::vector<double>& q,
+                 const std::function<double(const Side&)>& least);
 
 }  // namespace bowstring::newton

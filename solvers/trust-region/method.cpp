@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "plugins/sdk/guard.hpp"
+#include "solvers/newton/step_length.hpp"
 
 namespace bowstring::trust_region {
 
@@ -59,21 +60,8 @@ Method::Method(newton::Point& point, newton::Progress& progress, const Settings&
       subproblem_(point, metric_, progress.result()) {}
 
 void Method::pull_inside_bounds() {
-  problem_.values(point_.q, unknown_value_);
-  std::vector<double> delta(at(problem_.unknowns()), 0.0);
-  bool any = false;
-  for (const newton::Side& side : bounds_) {
-    const double lower = problem_.lower()[at(side.index)], upper = problem_.upper()[at(side.index)];
-    double push = bound_push * std::max(1e-3, std::fabs(side.bound));
-    if (std::isfinite(lower) && std::isfinite(upper)) push = std::min(push, 0.25 * (upper - lower));
-    if (-side.violation(unknown_value_[at(side.index)]) >= push) continue;
-    delta[at(side.index)] = side.bound - side.sign * push - unknown_value_[at(side.index)];
-    any = true;
-  }
-  if (!any) return;
-  std::vector<double> moved(point_.q.size());
-  problem_.retract(point_.q, delta, moved);
-  point_.q = moved;
+  newton::pull_inside(problem_, bounds_, point_.q,
+                      [](const newton::Side& side) { return bound_push * std::max(1e-3, std::fabs(side.bound)); });
 }
 
 Status Method::begin(std::vector<double>& multipliers) {
@@ -81,10 +69,7 @@ Status Method::begin(std::vector<double>& multipliers) {
   unknown_value_.resize(n);
   bounds_ = newton::sides_of_unknowns(problem_);
   pull_inside_bounds();
-  bool new_epoch = false;
-  Status status = point_.accept(new_epoch);
-  if (status.ok()) status = point_.expand();
-  if (!status.ok()) return status;
+  if (Status status = point_.arrive(); !status.ok()) return status;
   metric_.set_up(problem_, point_.q);
   normal_.analyse();
   subproblem_.analyse();
@@ -320,8 +305,7 @@ Method::Verdict Method::try_step(Step& step) {
   }
   if (!status.ok() || !std::isfinite(trial_.energy)) {
     trial_failure_ = status.code == Code::failed ? status.text : "";
-    const double travelled = status.code == Code::refused ? problem_.travelled() : 0.0;
-    radius_ = std::min(radius_, step.norm) * (travelled > 0.0 ? std::clamp(0.45 / travelled, 0.1, 0.7) : 0.5);
+    radius_ = newton::shortened(std::min(radius_, step.norm), status, problem_);
     return Verdict::shorten;
   }
   trials_refused_ = false;
@@ -342,8 +326,7 @@ Method::Verdict Method::try_step(Step& step) {
 Status Method::take() {
   point_.q.swap(trial_.q);
   bool new_epoch = false;
-  Status status = point_.accept(new_epoch);
-  if (status.ok()) status = point_.expand();
+  Status status = point_.arrive(&new_epoch);
   if (!status.ok() || !new_epoch) return status;
   normal_.analyse();
   subproblem_.analyse();

@@ -1,9 +1,10 @@
 #include "solvers/trust-region/normal_step.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
+
+#include "solvers/newton/stopwatch.hpp"
 
 namespace bowstring::trust_region {
 
@@ -53,7 +54,7 @@ double NormalStep::smooth_curvature() const {
 Status NormalStep::factor(bool& usable) {
   usable = false;
   if (Status status = point_.find_hessian(no_multipliers_); !status.ok()) return status;
-  const auto begin = std::chrono::steady_clock::now();
+  const newton::Stopwatch watch(count_.factorization_seconds);
   const SparsityPattern pattern = point_.problem().hessian_pattern();
   const auto attempt = [&](double shift) {
     energy_hessian_ = point_.hessian;
@@ -76,17 +77,15 @@ Status NormalStep::factor(bool& usable) {
     usable = attempt(shift);
   }
   if (usable) shift_ = shift;
-  count_.factorization_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return {};
 }
 
 void NormalStep::solve(Span<const double> a, Span<const double> b, std::vector<double>& delta,
                        std::vector<double>& lambda) {
-  const auto begin = std::chrono::steady_clock::now();
+  const newton::Stopwatch watch(count_.factorization_seconds);
   delta.resize(a.size());
   lambda.resize(b.size());
   system_.solve(a, b, {}, refinements, delta, lambda);
-  count_.factorization_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 void NormalStep::multipliers(std::vector<double>& out) {

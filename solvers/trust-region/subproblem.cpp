@@ -1,10 +1,11 @@
 #include "solvers/trust-region/subproblem.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+
+#include "solvers/newton/stopwatch.hpp"
 
 namespace bowstring::trust_region {
 
@@ -33,18 +34,6 @@ double between(double lower, double upper) {
   return std::max(std::sqrt(lower * upper), lower + 0.05 * (upper - lower));
 }
 
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds), begin_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point begin_;
-};
-
 }  // namespace
 
 Subproblem::Subproblem(newton::Point& point, const Metric& metric, SolverResult& count)
@@ -71,7 +60,7 @@ void Subproblem::analyse() {
 }
 
 bool Subproblem::factor(double shift, int* negative) {
-  const Stopwatch watch(count_.factorization_seconds);
+  const newton::Stopwatch watch(count_.factorization_seconds);
   shifted_ = point_.hessian;
   const SparsityPattern pattern = point_.problem().hessian_pattern();
   for (std::size_t u = 0; shift != 0.0 && u < metric_.weight().size(); ++u) {
@@ -89,7 +78,7 @@ bool Subproblem::factor(double shift, int* negative) {
 
 void Subproblem::solve(Span<const double> a, Span<const double> b, std::vector<double>& delta,
                        std::vector<double>& lambda) {
-  const Stopwatch watch(count_.factorization_seconds);
+  const newton::Stopwatch watch(count_.factorization_seconds);
   delta.resize(a.size());
   lambda.resize(b.size());
   system_.solve(a, b, {}, refinements, delta, lambda);

@@ -1,6 +1,5 @@
 #include "plugins/sdk/plugin.hpp"
-#include "solvers/newton/lent_system.hpp"
-#include "solvers/shared/backend.hpp"
+#include "solvers/newton/native_backend.hpp"
 #include "solvers/trust-region/method.hpp"
 
 namespace bowstring {
@@ -34,20 +33,14 @@ constexpr ParameterDeclaration schema[] = {
 
 class TrustRegion final : public Solver {
  public:
-  explicit TrustRegion(const ParameterSet& parameters) {
-    limits_.tolerance = parameters.scalar("tolerance");
-    limits_.max_iterations = static_cast<int>(parameters.integer("max-iterations"));
-    limits_.time_limit = backend::time_limit(parameters);
-    guard_ = backend::step_guard(parameters);
+  explicit TrustRegion(const ParameterSet& parameters) : backend_(parameters) {
     if (parameters.has("first-radius")) settings_.first_radius = parameters.scalar("first-radius");
     settings_.leave_saddles = parameters.flag("leave-saddles");
   }
 
   SolverTraits traits() const noexcept override {
-    SolverTraits traits;
+    SolverTraits traits = newton::NativeBackend::traits();
     traits.inequalities = false;
-    traits.window_segments = 2;
-    traits.window_length = 0.0;
     return traits;
   }
 
@@ -65,33 +58,19 @@ class TrustRegion final : public Solver {
 
   Status solve(Problem& problem, Span<const double> start, const SolverContext& context,
                SolverResult& out) noexcept override {
-    return guard([&] {
-      const backend::Guarded guarded(problem, guard_);
-      newton::Point point(problem, out);
-      point.q.assign(start.begin(), start.end());
-      newton::Progress progress(limits_, context, out);
-      std::vector<double> multipliers(context.multipliers.begin(), context.multipliers.end());
-      trust_region::Method method(point, progress, settings_);
-      const newton::Ending ending = method.run(multipliers);
-      lent_.keep(problem, point.q, multipliers);
-      out.q = point.q;
-      out.multipliers = multipliers;
-      out.claim = ending.claim;
-      out.reason = ending.reason;
-    });
+    return backend_.solve(problem, start, context, out,
+                          [&](newton::Point& point, newton::Progress& progress, std::vector<double>& multipliers) {
+                            return trust_region::Method(point, progress, settings_).run(multipliers);
+                          });
   }
 
   Status solve_kkt(Span<const double> right_hand_side, Span<double> out) noexcept override {
-    return guard([&] {
-      if (Status status = lent_.solve(right_hand_side, out); !status.ok()) throw StatusError(status);
-    });
+    return backend_.solve_kkt(right_hand_side, out);
   }
 
  private:
-  newton::Limits limits_;
-  newton::LentSystem lent_;
+  newton::NativeBackend backend_;
   trust_region::Settings settings_;
-  double guard_ = 0.5;
 };
 
 }  // namespace
