@@ -326,4 +326,18 @@ TEST_CASE("what rows fail by is told group by group") {
   CHECK(newton::largest_violation(problem, std::vector<double>{-3.5, 0.25}) == 2.5);
 }
 
+TEST_CASE("a row may read any number of unknowns") {
+  // ½ Σ (x − 1)² with Σ x ≤ n/2, whose multiplier is ½.
+  constexpr std::size_t n = 150;
+  for (const Method method : methods) {
+    RowProblem problem(std::vector<double>(n, 1.0), std::vector<double>(n, 1.0),
+                       {{std::vector<double>(n, 1.0), -infinity, 0.5 * n, 0.0}});
+    const Run run = solve(problem, std::vector<double>(n, 0.0), method, {}, std::vector<double>(1, 1.0));
+    CHECK(run.ending.claim == Claim::optimal);
+    CHECK(largest_difference(run.q, std::vector<double>(n, 0.5)) <= 1e-7);
+    REQUIRE(run.multipliers.size() == 1);
+    CHECK(run.multipliers[0] == doctest::Approx(0.5).epsilon(1e-6));
+  }
+}
+
 }  // namespace bowstring::testing
