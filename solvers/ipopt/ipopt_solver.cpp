@@ -29,12 +29,7 @@ constexpr double far_barrier = 1e-2;         // of one whose forces are out of b
 
 constexpr ParameterDeclaration schema[] = {
     backend::tolerance_key,
-    {.key = "max-iterations",
-     .type = ParameterType::integer,
-     .unit = "",
-     .default_text = "500",
-     .description = "over all epochs",
-     .lower = 1.0},
+    backend::max_iterations_key("500", "over all epochs"),
     backend::time_limit_key,
     {.key = "hessian",
      .type = ParameterType::choice,

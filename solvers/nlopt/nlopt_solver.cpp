@@ -11,13 +11,8 @@ namespace {
 
 constexpr ParameterDeclaration schema[] = {
     backend::tolerance_key,
-    {.key = "max-iterations",
-     .type = ParameterType::integer,
-     .unit = "",
-     .default_text = "",
-     .description =
-         "over all epochs; default 1000 with slsqp, 20000 with mma and ccsaq, where every trial point counts",
-     .lower = 1.0},
+    backend::max_iterations_key(
+        "", "over all epochs; default 1000 with slsqp, 20000 with mma and ccsaq, where every trial point counts"),
     backend::time_limit_key,
     {.key = "algorithm",
      .type = ParameterType::choice,

@@ -19,6 +19,16 @@ inline constexpr ParameterDeclaration tolerance_key{
     .lower = 0.0,
     .lower_exclusive = true};
 
+/// What an iteration is differs from solver to solver, and so does how many are plenty.
+constexpr ParameterDeclaration max_iterations_key(const char* default_text, const char* description) {
+  return {.key = "max-iterations",
+          .type = ParameterType::integer,
+          .unit = "",
+          .default_text = default_text,
+          .description = description,
+          .lower = 1.0};
+}
+
 inline constexpr ParameterDeclaration time_limit_key{
     .key = "time-limit",
     .type = ParameterType::scalar,

@@ -7,12 +7,7 @@ namespace {
 
 constexpr ParameterDeclaration schema[] = {
     backend::tolerance_key,
-    {.key = "max-iterations",
-     .type = ParameterType::integer,
-     .unit = "",
-     .default_text = "500",
-     .description = "accepted steps, over all epochs",
-     .lower = 1.0},
+    backend::max_iterations_key("500", "accepted steps, over all epochs"),
     backend::time_limit_key,
     backend::step_guard_key,
     {.key = "first-radius",
