@@ -51,6 +51,8 @@ const char* type_name(ParameterType type) {
       return "flag";
     case ParameterType::text:
       return "text";
+    case ParameterType::names:
+      return "names";
     case ParameterType::list:
       break;
   }

@@ -43,6 +43,8 @@ std::string expectation(const ParameterDeclaration& declaration) {
       return "true or false";
     case ParameterType::text:
       return "text";
+    case ParameterType::names:
+      return "a name, or a list of names";
     case ParameterType::list:
       return "a list of tables";
   }
@@ -68,6 +70,8 @@ std::string assignment(const ParameterDeclaration& declaration) {
       return key + "true";
     case ParameterType::text:
       return key + "\"<text>\"";
+    case ParameterType::names:
+      return key + "[\"<name>\", …]";
     case ParameterType::list:
       return key + "[{ … }]";
   }
@@ -116,6 +120,8 @@ class ValueReader {
         return read_flag(node);
       case ParameterType::text:
         return read_text(node);
+      case ParameterType::names:
+        return read_names(node);
       case ParameterType::list:
         return read_list(node);
     }
@@ -202,6 +208,15 @@ class ValueReader {
   bool read_text(const Node& node) {
     if (!node.is_text()) return fail_type(node);
     value_.text = node.text;
+    return true;
+  }
+
+  bool read_names(const Node& node) {
+    const std::vector<Node> single{node};
+    for (const Node& item : node.is_list() ? node.items : single) {
+      if (!item.is_text() || item.text.empty()) return fail_type(item);
+      value_.names.push_back(item.text);
+    }
     return true;
   }
 

@@ -75,6 +75,8 @@ Json value_json(const ParameterValue& value, const ParameterDeclaration& declara
     case ParameterType::choice:
     case ParameterType::text:
       return value.text;
+    case ParameterType::names:
+      return value.names;
     case ParameterType::vector: {
       Json list = Json::array();
       for (const double entry : value.vector) list.push_back(number(entry));

@@ -39,10 +39,13 @@ struct CurveView {
   const double* edge_length = nullptr;  ///< nodes − 1: edge lengths at State 1 (vessel) or at the start (wire), mm
   const double* fraction = nullptr;     ///< nodes − 1: f_i of a sliding wire, summing to 1; 0 on a held edge
   const double* arc = nullptr;          ///< nodes: arc coordinate, mm
-  double start_length = 0.0;            ///< L at the start without held edges, mm
-  double held_length = 0.0;             ///< sum of the held edges' lengths, mm
-  double end_distance = 0.0;            ///< of the two end nodes in State 1 with their prescribed moves, mm
-  EndCondition end[2];                  ///< first end, last end
+  /// Node positions at the end of the step before, nodes × dimension, mm; null in the first step, and where the curve
+  /// was not there. For terms that remember where they came from.
+  const double* previous = nullptr;
+  double start_length = 0.0;  ///< L at the start without held edges, mm
+  double held_length = 0.0;   ///< sum of the held edges' lengths, mm
+  double end_distance = 0.0;  ///< of the two end nodes in State 1 with their prescribed moves, mm
+  EndCondition end[2];        ///< first end, last end
 };
 
 /// Whether an end holds this coordinate of a node. A held edge holds both of its nodes.

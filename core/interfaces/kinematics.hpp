@@ -74,6 +74,14 @@ struct CurveSample {
   std::vector<double> orientation;  ///< count × 4: quaternion of the frame, first axis along the tangent
 };
 
+/// A curve as it stands, whatever represents it.
+struct CurveShape {
+  Span<const double> position;  ///< nodes × dimension, mm
+  /// (nodes − 1) × 4: quaternions (w, x, y, z) of the edges, first axis along the edge; the rotation about it is the
+  /// material frame's where the curve has one.
+  Span<const double> orientation;
+};
+
 /// kind `kinematics`: which unknowns represent a curve. It declares fields, its own equality rows (site
 /// `closure`, residual zero) and what the ends hold; it never sees an energy. Second derivatives are Taylor
 /// coefficients of δ ↦ y(q · Exp δ) at δ = 0.
@@ -85,6 +93,13 @@ class Kinematics {
   virtual Status evaluate(const SiteEvaluation& evaluation) const noexcept = 0;
   /// Positions and frames at the given fractions of the curve's edges: t = 2.25 is a quarter along the third edge.
   virtual Status sample(Span<const double> q, Span<const double> edge_coordinate, CurveSample& out) const noexcept = 0;
+  /// Coordinates of a curve of this shape: a state of another mesh or another kinematics, or of the step before. What
+  /// the curve cannot be (a wire of fixed length that is asked to stretch) is left to the closure rows.
+  virtual Status adopt(const CurveShape& shape, Span<double> q) const noexcept {
+    (void)shape;
+    (void)q;
+    return Status::failure(Code::unsupported, "this kinematics does not take the shape of another curve");
+  }
   /// Coordinates whose strains are the given ones (starts, residuals); `strain` in the order of the stations.
   virtual Status reconstruct(Span<const double> strain, Span<double> q) const noexcept {
     (void)strain;

@@ -7,7 +7,7 @@
 
 namespace bowstring {
 
-enum class ParameterType : int { scalar, profile, vector, path, choice, integer, flag, text, list };
+enum class ParameterType : int { scalar, profile, vector, path, choice, integer, flag, text, names, list };
 
 /// The one declaration of a parameter: parser, default, bounds, `describe`, documentation and the resolved
 /// composition all come from it. Plain constants, so that a schema is a static table.
@@ -63,6 +63,7 @@ struct ParameterValue {
   bool flag = false;                ///< flag
   std::string text;                 ///< choice, text, path (absolute), or the name that stands for a scalar
   std::vector<double> vector;       ///< vector
+  std::vector<std::string> names;   ///< names: a list of texts, or one text
   Profile profile;                  ///< profile
   std::vector<ParameterSet> items;  ///< list
   std::string position;             ///< "file:line:column" of the value in the composition, "" for a default
@@ -82,6 +83,7 @@ struct ParameterSet {
   bool flag(const std::string& key) const { return at(key).flag; }
   const std::string& text(const std::string& key) const { return at(key).text; }
   const std::vector<double>& vector(const std::string& key) const { return at(key).vector; }
+  const std::vector<std::string>& names(const std::string& key) const { return at(key).names; }
   const Profile& profile(const std::string& key) const { return at(key).profile; }
 };
 

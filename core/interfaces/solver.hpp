@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,16 @@ struct SolverContext {
 /// What the solver believes. The kernel judges for itself.
 enum class Claim : int { optimal, stalled, infeasible, diverged, failed };
 
+/// How an enforcement imposed its rows, and what that leaves of them. What is not known is left out.
+struct EnforcementReport {
+  int outer_iterations = 1;               ///< solves of what remains
+  std::optional<double> weight;           ///< N/mm: the last one of a method that has weights
+  std::optional<double> penetration;      ///< mm: largest violation that the weight leaves, from the multipliers
+  std::optional<double> energy;           ///< N mm: what exact rows would add to the energy found, estimated …
+  std::optional<double> measured_energy;  ///< … and measured, by a solve with exact rows
+  std::optional<double> measured_motion;  ///< mm: how far that solve moved a node at most
+};
+
 struct SolverResult {
   Claim claim = Claim::failed;
   std::string reason;
@@ -37,6 +48,7 @@ struct SolverResult {
   double evaluation_seconds = 0.0;     ///< in the problem's evaluations
   double factorization_seconds = 0.0;  ///< in factorizations and solves; 0 where the backend hides it
   std::vector<IterationRecord> history;
+  EnforcementReport enforcement;  ///< an enforcement's to fill in
 };
 
 struct SolverTraits {
