@@ -8,7 +8,9 @@
 
 #include "apps/outputs.hpp"
 #include "apps/shell.hpp"
-#include "core/result/solved.hpp"
+#include "core/procedure/procedure.hpp"
+#include "core/procedure/summary.hpp"
+#include "core/result/document.hpp"
 
 namespace bowstring::apps {
 
@@ -41,14 +43,45 @@ void line(const char* label, const std::optional<double>& value, const char* uni
   if (value && std::isfinite(*value)) std::printf("  %-26s %12s %s\n", label, number(*value, 6).c_str(), unit);
 }
 
-void print_table(const Session& session, const Solution& solution, const Readings& readings) {
+void print_path(const Path& path) {
+  if (path.value.empty()) return;
+  std::printf("path of %s: %s%s\n", path.value.c_str(), counted(static_cast<int>(path.points.size()), "point").c_str(),
+              path.reached ? "" : ", which does not arrive");
+  for (const CriticalPoint& point : path.critical) {
+    std::printf("  %-26s %12s %s, negative directions %d to %d\n", critical_name(point.kind),
+                number(point.parameter.front(), 8).c_str(), path.unit.c_str(), point.index_before, point.index_after);
+  }
+}
+
+void print_equilibria(const std::vector<Equilibrium>& equilibria) {
+  if (equilibria.empty()) return;
+  std::printf("equilibria\n");
+  for (const Equilibrium& one : equilibria) {
+    const char* second = curvature_name(one.state.certificate.second_order.curvature);
+    std::printf("  %-26s %12s N mm, %s, from %s\n", second == nullptr ? "not judged" : second,
+                number(total_energy(one.state), 8).c_str(), one.origin.c_str(), counted(one.basin, "start").c_str());
+  }
+}
+
+void print_states(const std::vector<StateResult>& states) {
+  if (states.front().name.empty()) return;
+  std::printf("states\n");
+  for (const StateResult& state : states) {
+    std::printf("  %-26s %s: %s\n", state.name.c_str(), verdict_name(state.solution.certificate.verdict),
+                state.solution.certificate.reason.c_str());
+  }
+}
+
+void print_table(const StateResult& result) {
+  const SessionRecord& session = result.session;
+  const Solution& solution = result.solution;
+  const Readings& readings = result.readings;
   const Certificate& certificate = solution.certificate;
-  if (!session.composition.title.empty()) std::printf("%s\n", session.composition.title.c_str());
+  if (!session.title.empty()) std::printf("%s\n", session.title.c_str());
   std::printf("%s: %s\n", verdict_name(certificate.verdict), certificate.reason.c_str());
   std::printf("  %s, %s, %s; load %.0f ms, set-up %.0f ms, solve %.0f ms\n",
-              counted(solution.solver.iterations, "iteration").c_str(),
-              counted(session.assembly->epochs(), "epoch").c_str(),
-              counted(session.assembly->unknowns(), "unknown").c_str(), 1e3 * session.seconds.load,
+              counted(solution.solver.iterations, "iteration").c_str(), counted(session.epochs, "epoch").c_str(),
+              counted(session.problem.unknowns, "unknown").c_str(), 1e3 * session.seconds.load,
               1e3 * session.seconds.setup, 1e3 * session.seconds.solve);
   std::printf("energy\n");
   double total = 0.0;
@@ -93,30 +126,35 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
   if (const int code = outputs.prepare(options.out, options.write, host); code != exit_converged) return code;
 
   Refusal refusal;
-  const std::unique_ptr<Session> session = prepare(request, host, refusal);
-  if (session == nullptr) return report(refusal);
-  if (const int code = outputs.spare(session->composition.input_files); code != exit_converged) return code;
+  const std::unique_ptr<Procedure> procedure = Procedure::prepare(request, host, refusal);
+  if (procedure == nullptr) return report(refusal);
+  if (const int code = outputs.spare(procedure->input_files()); code != exit_converged) return code;
 
   std::signal(SIGINT, on_interrupt);
   Progress progress;
-  const Solved solved = solve_and_read(*session, host, std::ref(progress));
+  const std::vector<StateResult> states = procedure->run(std::ref(progress));
   progress.finish();
   std::signal(SIGINT, SIG_DFL);
 
-  if (!solved.readable.ok()) complain(solved.readable.text);
-  const int written = outputs.write(solved.document);  // before anything is printed: a pipe may be closed by now
+  const StateResult& result = states.back();
+  if (!result.readable.ok()) complain(result.readable.text);
+  const std::string document = result_document(states);
+  const int written = outputs.write(document);  // before anything is printed: a pipe may be closed by now
   if (options.json) {
-    std::fwrite(solved.document.data(), 1, solved.document.size(), stdout);
+    std::fwrite(document.data(), 1, document.size(), stdout);
   } else {
-    print_table(*session, solved.solution, solved.readings);
+    print_table(result);
+    print_path(result.path);
+    print_equilibria(result.equilibria);
+    print_states(states);
   }
-  for (const std::string& warning : solved.solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& warning : result.solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (written != exit_converged) return written;
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     complain("stdout cannot be written");
     return exit_fell_short;
   }
-  return solved.solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
+  return result.solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
 }
 
 }  // namespace bowstring::apps

@@ -9,6 +9,7 @@
 #include "core/composition/keys.hpp"
 #include "core/composition/report.hpp"
 #include "core/composition/resolved.hpp"
+#include "core/composition/sequences.hpp"
 #include "core/composition/settings.hpp"
 #include "core/composition/sources.hpp"
 #include "core/composition/start.hpp"
@@ -57,6 +58,8 @@ Composition read_composition(const Node& root, Reading& reading) {
   composition.solver = read_solver(root, reading);
   composition.certificate = read_certificate(root, report);
   composition.start = read_start(root, report);
+  composition.continuation = read_continuation(root, report);
+  composition.multistart = read_multistart(root, report);
   check_duplicates(root, report);
   return composition;
 }
@@ -97,6 +100,7 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
     Composition composition = read_composition(sources->root, reading);
     composition.file = request.file;
     composition.input_files = sources->files;
+    composition.steps = sources->steps;
     for (const ComponentChoice* choice : components_of(composition)) {
       add_paths(choice->parameters, composition.input_files);
     }

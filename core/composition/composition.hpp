@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/composition/recorded_state.hpp"
+#include "core/composition/value_range.hpp"
 #include "core/interfaces/curve.hpp"
 #include "core/interfaces/registry.hpp"
 
@@ -109,6 +110,40 @@ struct StartTable {
   std::shared_ptr<const RecordedState> state;
 };
 
+/// A walk from one value of a path to another, over the equilibria in between.
+struct ContinuationTable {
+  bool given = false;
+  std::string path;
+  ValueRange range;
+  bool fallback = false;  ///< only where the solve from the start does not converge
+  bool arclength = true;  ///< along the path of equilibria where that can be
+  // Shares of the way.
+  double first_step = 0.1, smallest_step = 1e-4, largest_step = 0.25;
+  double tolerance = 1e-6;  ///< to which folds and bifurcations are located
+  long most_points = 500;
+  std::string position, path_position, from_position, to_position;
+};
+
+/// Several starts, and the equilibria that they lead to.
+struct MultistartTable {
+  bool given = false;
+  long starts = 8;  ///< the first one unperturbed
+  long seed = 1;
+  bool seed_given = false;
+  std::optional<double> perturbation;  ///< mm, root mean square; empty: from the scene
+  bool mirrored = true;                ///< every second start is the mirror image of the one before it
+  double distance = 1e-3;              ///< mm: equilibria are one where no node is farther apart
+  bool saddles = true;                 ///< looked for between neighbouring minima
+  std::string position;
+};
+
+/// One of the states that a composition chains. Its overrides are in the composition that is read for it.
+struct StepTable {
+  std::string name;               ///< or its number, from 1
+  bool rest_is_previous = false;  ///< the state before becomes the rest state of vessels; else that stays State 1
+  std::string position;
+};
+
 /// A checked, resolved composition: every reference holds, every number is in mm, N, rad.
 struct Composition {
   int schema = 1;
@@ -124,6 +159,9 @@ struct Composition {
   ComponentChoice enforcement, solver;
   CertificateTable certificate;
   StartTable start;
+  ContinuationTable continuation;
+  MultistartTable multistart;
+  std::vector<StepTable> steps;          ///< all of them, whichever this composition is read for
   std::vector<std::string> plugin_path;  ///< absolute
   std::string resolved_json;             ///< everything above with defaults filled in, as the result document holds it
   std::vector<std::string> warnings;
@@ -137,6 +175,9 @@ std::vector<const ComponentChoice*> components_of(const Composition& composition
 struct Override {
   std::string path;   ///< "energy.axial-tension.tension"
   std::string value;  ///< TOML; what does not parse as TOML is a string
+  /// Where it comes from, if not from the command line: "scene.toml:31:8"; errors then begin with it, and it comes
+  /// after the overrides of steps.
+  std::string position = "";
 };
 
 struct CompositionRequest {
@@ -144,6 +185,7 @@ struct CompositionRequest {
   std::vector<Override> overrides;
   /// The composition itself. `file`, which need not exist, is then what errors call it and where its paths start.
   std::optional<std::string> text = std::nullopt;
+  int step = 0;  ///< of a composition with steps: the one whose overrides, after those before it, count
 };
 
 struct CompositionOutcome {

@@ -180,6 +180,38 @@ Json certificate_json(const CertificateTable& certificate) {
           {"minimum-stretch", certificate.minimum_stretch}, {"require", certificate.require}};
 }
 
+Json range_end(const ValueRange& range, double t) {
+  Json list = Json::array();
+  for (const double value : range.at(t)) {
+    const Json number = range.whole ? Json(static_cast<long>(value)) : Json(value);
+    list.push_back(range.unit.empty() ? number : Json(number.dump() + " " + range.unit));
+  }
+  return range.list ? list : list.front();
+}
+
+Json continuation_json(const ContinuationTable& walk) {
+  return {{"path", walk.path},
+          {"from", range_end(walk.range, 0.0)},
+          {"to", range_end(walk.range, 1.0)},
+          {"when", walk.fallback ? "fallback" : "always"},
+          {"scale", walk.range.logarithmic ? "log" : "linear"},
+          {"arclength", walk.arclength ? "auto" : "never"},
+          {"first-step", walk.first_step},
+          {"smallest-step", walk.smallest_step},
+          {"largest-step", walk.largest_step},
+          {"tolerance", walk.tolerance},
+          {"max-points", walk.most_points}};
+}
+
+Json multistart_json(const MultistartTable& table) {
+  Json out = {{"starts", table.starts}, {"seed", table.seed}};
+  if (table.perturbation) out["perturbation"] = *table.perturbation;
+  out["mirrored"] = table.mirrored;
+  out["distance"] = table.distance;
+  out["saddles"] = table.saddles;
+  return out;
+}
+
 }  // namespace
 
 std::string resolved_json(const Composition& composition) {
@@ -199,6 +231,8 @@ std::string resolved_json(const Composition& composition) {
   root["solver"] = component_json(composition.solver);
   root["certificate"] = certificate_json(composition.certificate);
   if (!composition.start.from.empty()) root["start"]["from"] = composition.start.from;
+  if (composition.continuation.given) root["continuation"] = continuation_json(composition.continuation);
+  if (composition.multistart.given) root["multistart"] = multistart_json(composition.multistart);
   return root.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

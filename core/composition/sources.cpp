@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/composition/override.hpp"
+#include "core/composition/sequences.hpp"
 #include "core/composition/toml_text.hpp"
 #include "core/composition/vocabulary.hpp"
 
@@ -193,15 +194,24 @@ class ChainReader {
   std::vector<Link> chain_;
 };
 
-void apply_request(Node& root, const CompositionRequest& request, Report& report) {
-  int order = order_of_overrides;
+void apply_requested(Node& root, const Override& one, int order, Report& report) {
+  const auto source = std::make_shared<Source>();
+  source->name = one.position.empty() ? "--set " + one.path + "=" + one.value : one.position;
+  source->directory = absolute_path(".");
+  source->order = order_of_overrides + order;
+  const Position position{source, 0, 0};
+  apply_override(root, one.path, position, read_value_or_text(one.value, position), report);
+}
+
+void apply_request(SourceTree& tree, const CompositionRequest& request, Report& report) {
+  int order = 0;
   for (const Override& one : request.overrides) {
-    const auto source = std::make_shared<Source>();
-    source->name = "--set " + one.path + "=" + one.value;
-    source->directory = absolute_path(".");
-    source->order = order++;
-    const Position position{source, 0, 0};
-    apply_override(root, one.path, position, read_value_or_text(one.value, position), report);
+    if (one.position.empty()) apply_requested(tree.root, one, order++, report);
+  }
+  tree.steps = read_steps(tree.root, report);
+  apply_steps(tree.root, request.step, report);
+  for (const Override& one : request.overrides) {
+    if (!one.position.empty()) apply_requested(tree.root, one, order++, report);
   }
 }
 
@@ -209,7 +219,7 @@ void apply_request(Node& root, const CompositionRequest& request, Report& report
 
 std::optional<SourceTree> read_sources(const CompositionRequest& request, Report& report) {
   std::optional<SourceTree> tree = ChainReader(report).read(request.file, {}, request.text);
-  if (tree) apply_request(tree->root, request, report);
+  if (tree) apply_request(*tree, request, report);
   return tree;
 }
 

@@ -5,31 +5,32 @@
 namespace bowstring {
 
 const std::vector<std::string>& list_table_names() {
-  static const std::vector<std::string> names{"vessel", "wire", "energy", "constraint"};
+  static const std::vector<std::string> names{"vessel", "wire", "energy", "constraint", "step"};
   return names;
 }
 
 const std::vector<std::string>& single_table_names() {
-  static const std::vector<std::string> names{"scene", "enforcement", "solver", "certificate", "start"};
+  static const std::vector<std::string> names{"scene", "enforcement",  "solver",    "certificate",
+                                              "start", "continuation", "multistart"};
   return names;
 }
 
 const std::vector<std::string>& top_level_names() {
-  static const std::vector<std::string> names{"schema",      "title",  "base",        "plugin-path", "set",
-                                              "scene",       "vessel", "wire",        "energy",      "constraint",
-                                              "enforcement", "solver", "certificate", "start"};
+  static const std::vector<std::string> names{
+      "schema",     "title",       "base",   "plugin-path", "set",   "scene",        "vessel",     "wire", "energy",
+      "constraint", "enforcement", "solver", "certificate", "start", "continuation", "multistart", "step"};
   return names;
 }
 
 const std::vector<std::string>& overridable_names() {
-  static const std::vector<std::string> names{"title",      "scene",       "vessel", "wire",        "energy",
-                                              "constraint", "enforcement", "solver", "certificate", "start"};
+  static const std::vector<std::string> names{"title",        "scene",       "vessel", "wire",        "energy",
+                                              "constraint",   "enforcement", "solver", "certificate", "start",
+                                              "continuation", "multistart",  "step"};
   return names;
 }
 
 const std::vector<std::string>& later_table_names() {
-  static const std::vector<std::string> names{"step",     "continuation", "multistart", "loss",
-                                              "residual", "readout",      "axes"};
+  static const std::vector<std::string> names{"loss", "residual", "readout", "axes"};
   return names;
 }
 

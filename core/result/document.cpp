@@ -116,8 +116,11 @@ std::vector<std::string> joined(std::vector<std::string> texts, const std::vecto
   return texts;
 }
 
+Json negative_directions(const Certificate& c) {
+  return c.second_order.curvature != Curvature::unjudged ? Json(c.second_order.negative_directions) : Json(nullptr);
+}
+
 Json certificate(const Certificate& c) {
-  const bool judged = c.second_order.curvature != Curvature::unjudged;
   return {{"stationarity", finite(c.stationarity)},
           {"rounding_floor_N", finite(c.rounding_floor)},
           {"max_penetration_mm", finite(c.penetration)},
@@ -128,7 +131,7 @@ Json certificate(const Certificate& c) {
           {"min_multiplier", finite(c.minimum_multiplier)},
           {"second_order", word(curvature_name(c.second_order.curvature))},
           {"second_order_reason", c.second_order.reason},
-          {"negative_directions", judged ? Json(c.second_order.negative_directions) : Json(nullptr)},
+          {"negative_directions", negative_directions(c)},
           {"leftmost_curvature_N_per_mm2", optional(c.second_order.leftmost_curvature)},
           {"leftmost_mode", c.second_order.leftmost_mode.empty() ? Json(nullptr) : Json(c.second_order.leftmost_mode)},
           {"neutral_modes", c.second_order.neutral_modes},
@@ -206,24 +209,123 @@ Json supports(const Scene& scene, const Readings& readings) {
   return out;
 }
 
-Json state(const SessionRecord& session, const Solution& solution) {
-  const RecordedState recorded = record_state(*session.scene, session.rows, solution.q, solution.multipliers);
+Json state(const SessionRecord& session, const std::vector<double>& q, const std::vector<double>& carried) {
+  const RecordedState recorded = record_state(*session.scene, session.rows, q, carried);
   Json fields = Json::object(), multipliers = Json::object();
   for (const NamedNumbers& field : recorded.fields) fields[field.name] = numbers(field.values);
   for (const NamedNumbers& group : recorded.multipliers) multipliers[group.name] = numbers(group.values);
   return {{"fields", fields}, {"multipliers", multipliers}};
 }
 
-Json energies(const Scene& scene, const Readings& readings) {
+Json energies(const std::vector<std::string>& labels, const Readings& readings) {
   Json energy = Json::object();
   double total = 0.0;
   for (std::size_t e = 0; e < readings.term_energy.size(); ++e) {
-    energy[scene.energies[e].label] = finite(readings.term_energy[e]);
+    energy[labels[e]] = finite(readings.term_energy[e]);
     total += readings.term_energy[e];
   }
-  const bool known = readings.term_energy.size() == scene.energies.size();
+  const bool known = readings.term_energy.size() == labels.size();
   energy["total"] = known ? finite(total) : Json(nullptr);
   return energy;
+}
+
+Json energies(const Scene& scene, const Readings& readings) {
+  std::vector<std::string> labels;
+  for (const EnergyUse& use : scene.energies) labels.push_back(use.label);
+  return energies(labels, readings);
+}
+
+/// A value that was walked, as the composition writes it without its unit.
+Json parameter(const Path& path, const std::vector<double>& value) {
+  return path.list ? numbers(value) : finite(value.front());
+}
+
+Json path_points(const Path& path) {
+  Json out = Json::array();
+  for (const PathPoint& point : path.points) {
+    const Certificate& found = point.state.certificate;
+    out.push_back({{"parameter", parameter(path, point.parameter)},
+                   {"share", point.share},
+                   {"arclength", point.arclength},
+                   {"verdict", verdict_name(found.verdict)},
+                   {"reason", found.reason},
+                   {"second_order", word(curvature_name(found.second_order.curvature))},
+                   {"negative_directions", negative_directions(found)},
+                   {"energy", energies(point.state.energy_label, point.state.readings)},
+                   {"quantities", quantities(point.state.readings.quantities)},
+                   {"iterations", point.iterations},
+                   {"by_solver", point.by_solver}});
+  }
+  return out;
+}
+
+Json continuation(const Path& path) {
+  if (path.value.empty()) return nullptr;
+  Json critical = Json::array();
+  for (const CriticalPoint& point : path.critical) {
+    critical.push_back({{"kind", critical_name(point.kind)},
+                        {"parameter", parameter(path, point.parameter)},
+                        {"share", point.share},
+                        {"uncertainty", point.uncertainty},
+                        {"energy_N_mm", finite(point.energy)},
+                        {"negative_directions_before", point.index_before},
+                        {"negative_directions_after", point.index_after}});
+  }
+  return {{"path", path.value},
+          {"unit", path.unit},
+          {"reached", path.reached},
+          {"reason", path.reason.empty() ? Json(nullptr) : Json(path.reason)},
+          {"critical_points", std::move(critical)}};
+}
+
+Json curves(const Scene& scene, const Readings& readings) {
+  Json out = Json::array();
+  for (const CurveRecord& record : readings.curves) out.push_back(curve(*scene.curves[at(record.curve)], record));
+  return out;
+}
+
+Json equilibria(const StateResult& result) {
+  const Scene& scene = *result.session.scene;
+  Json out = Json::array();
+  for (const Equilibrium& one : result.equilibria) {
+    const Certificate& found = one.state.certificate;
+    out.push_back({{"origin", one.origin},
+                   {"basin_count", one.basin},
+                   {"index", negative_directions(found)},
+                   {"status", verdict_name(found.verdict)},
+                   {"reason", found.reason},
+                   {"certificate", certificate(found)},
+                   {"energy", energies(one.state.energy_label, one.state.readings)},
+                   {"quantities", quantities(one.state.readings.quantities)},
+                   {"curves", curves(scene, one.state.readings)},
+                   {"contacts", contacts(scene, one.state.readings)},
+                   {"supports", supports(scene, one.state.readings)},
+                   {"state", state(result.session, one.q, one.multipliers)}});
+  }
+  return out;
+}
+
+/// All that the document says of one state, and not of where its plugins came from.
+void add_state(Json& out, const StateResult& result) {
+  const Scene& scene = *result.session.scene;
+  out["status"] = verdict_name(result.solution.certificate.verdict);
+  out["reason"] = result.solution.certificate.reason;
+  out["warnings"] = result.solution.warnings;
+  out["composition"] = Json::parse(result.session.composition);
+  out["provenance"] = Json::parse(result.session.provenance);
+  if (result.solution.start) out["provenance"]["start"] = start_of(*result.solution.start);
+  out["problem"] = problem(result.session);
+  out["solver"] = solver(result.session, result.solution);
+  out["certificate"] = certificate(result.solution.certificate);
+  out["energy"] = energies(scene, result.readings);
+  out["quantities"] = quantities(result.readings.quantities);
+  out["curves"] = curves(scene, result.readings);
+  out["contacts"] = contacts(scene, result.readings);
+  out["supports"] = supports(scene, result.readings);
+  out["state"] = state(result.session, result.solution.q, result.solution.multipliers);
+  out["equilibria"] = equilibria(result);
+  out["continuation"] = continuation(result.path);
+  out["path"] = path_points(result.path);
 }
 
 std::string written(const Json& document, int indent) {
@@ -243,6 +345,7 @@ SessionRecord record_of(const Session& session, std::string provenance) {
   return {session.scene,
           session.composition.resolved_json,
           std::move(provenance),
+          session.composition.title,
           session.composition.solver.name,
           session.assembly->summary(),
           session.assembly->row_origins(),
@@ -250,45 +353,29 @@ SessionRecord record_of(const Session& session, std::string provenance) {
           session.seconds};
 }
 
-std::string result_document(const SessionRecord& session, const Solution& solution, const Readings& readings) {
-  const Scene& scene = *session.scene;
-  Json curves = Json::array();
-  for (const CurveRecord& record : readings.curves) curves.push_back(curve(*scene.curves[at(record.curve)], record));
-
+std::string result_document(const std::vector<StateResult>& states) {
   Json document;
   document["format"] = result_format;
-  document["status"] = verdict_name(solution.certificate.verdict);
-  document["reason"] = solution.certificate.reason;
-  document["warnings"] = solution.warnings;
-  document["composition"] = Json::parse(session.composition);
-  document["provenance"] = Json::parse(session.provenance);
-  if (solution.start) document["provenance"]["start"] = start_of(*solution.start);
-  document["problem"] = problem(session);
-  document["solver"] = solver(session, solution);
-  document["certificate"] = certificate(solution.certificate);
-  document["energy"] = energies(scene, readings);
-  document["quantities"] = quantities(readings.quantities);
-  document["curves"] = std::move(curves);
-  document["contacts"] = contacts(scene, readings);
-  document["supports"] = supports(scene, readings);
-  document["state"] = state(session, solution);
-  document["equilibria"] = Json::array();
+  add_state(document, states.back());
+  document["states"] = Json::array();
+  for (const StateResult& result : states) {
+    if (result.name.empty()) continue;
+    Json entry;
+    entry["name"] = result.name;
+    add_state(entry, result);
+    document["states"].push_back(std::move(entry));
+  }
   return written(document, 1) + "\n";
 }
 
-std::string result_scalars(const SessionRecord& session, const Solution& solution, const Readings& readings) {
+std::string result_scalars(const StateResult& result) {
   Json document;
-  document["status"] = verdict_name(solution.certificate.verdict);
-  document["reason"] = solution.certificate.reason;
-  document["certificate"] = certificate(solution.certificate);
-  document["energy"] = energies(*session.scene, readings);
-  document["quantities"] = quantities(readings.quantities);
+  document["status"] = verdict_name(result.solution.certificate.verdict);
+  document["reason"] = result.solution.certificate.reason;
+  document["certificate"] = certificate(result.solution.certificate);
+  document["energy"] = energies(*result.session.scene, result.readings);
+  document["quantities"] = quantities(result.readings.quantities);
   return written(document, -1);
-}
-
-std::string result_document(const Session& session, const Solution& solution, const Readings& readings,
-                            const Registry& registry) {
-  return result_document(record_of(session, provenance_json(session, registry)), solution, readings);
 }
 
 }  // namespace bowstring

@@ -137,8 +137,8 @@ void renew(ConstraintUse& use, const ComponentChoice& choice) {
   }
 }
 
-/// New constraints and a new assembly, as if nothing had been solved before. Where that fails the old ones stay: they
-/// fit each other.
+}  // namespace
+
 void bind_anew(Session& session, const std::vector<double>& q) {
   Scene& scene = *session.scene;
   std::vector<std::pair<Owned<Constraint>, RowDeclaration>> before;
@@ -160,6 +160,8 @@ void bind_anew(Session& session, const std::vector<double>& q) {
   }
 }
 
+namespace {
+
 /// Whether the solver was stopped from outside, or by what the user allows it.
 bool was_stopped(const Session& session, const Solution& solution, bool by_user, double seconds) {
   const ParameterSet& parameters = session.composition.solver.parameters;
@@ -169,31 +171,14 @@ bool was_stopped(const Session& session, const Solution& solution, bool by_user,
          (limit != nullptr && seconds >= limit->number);
 }
 
-Solution solve_from(Session& session, const std::vector<double>& q, Span<const double> multipliers,
-                    const std::function<bool(const IterationRecord&)>& progress) {
-  const auto begin = Clock::now();
-  Solution solution;
-  Assembly& assembly = *session.assembly;
-  SolverContext context;
-  context.on_iteration = progress;
-  context.multipliers = multipliers;
-  Status status = session.enforcement->solve(assembly, *session.solver, q, context, solution.solver);
-  if (const std::string flaw = flaw_of(solution.solver, assembly); status.ok() && !flaw.empty()) {
-    status = Status::failure(Code::failed, "it " + flaw);
-    solution.solver.q.clear();
-    solution.solver.multipliers.clear();
-  }
-  if (!status.ok()) {
-    solution.solver.claim = Claim::failed;
-    solution.solver.reason = "solver '" + session.composition.solver.name + "': " + status.text;
-  }
-  session.seconds.solve += since(begin);
+/// Accepts and certifies what the solver found; where it found nothing, its start.
+void judge(Session& session, const std::vector<double>& start, Solution& solution) {
   const auto judging = Clock::now();
-
-  solution.q = solution.solver.q.empty() ? q : solution.solver.q;
+  Assembly& assembly = *session.assembly;
+  solution.q = solution.solver.q.empty() ? start : solution.solver.q;
   solution.multipliers = solution.solver.multipliers;
   solution.estimated_multipliers = solution.multipliers.size() != static_cast<std::size_t>(assembly.rows());
-  status = assembly.accept(solution.q);
+  Status status = assembly.accept(solution.q);
   if (status.ok() && solution.estimated_multipliers) {
     status = estimate_multipliers(assembly, solution.q, contact_reach, solution.multipliers);
   }
@@ -216,6 +201,28 @@ Solution solve_from(Session& session, const std::vector<double>& q, Span<const d
                   tolerance->number, certificate.stationarity, certificate.rounding_floor);
     solution.warnings.emplace_back(text);
   }
+}
+
+Solution solve_from(Session& session, const std::vector<double>& q, Span<const double> multipliers,
+                    const std::function<bool(const IterationRecord&)>& progress) {
+  const auto begin = Clock::now();
+  Solution solution;
+  Assembly& assembly = *session.assembly;
+  SolverContext context;
+  context.on_iteration = progress;
+  context.multipliers = multipliers;
+  Status status = session.enforcement->solve(assembly, *session.solver, q, context, solution.solver);
+  if (const std::string flaw = flaw_of(solution.solver, assembly); status.ok() && !flaw.empty()) {
+    status = Status::failure(Code::failed, "it " + flaw);
+    solution.solver.q.clear();
+    solution.solver.multipliers.clear();
+  }
+  if (!status.ok()) {
+    solution.solver.claim = Claim::failed;
+    solution.solver.reason = "solver '" + session.composition.solver.name + "': " + status.text;
+  }
+  session.seconds.solve += since(begin);
+  judge(session, q, solution);
   return solution;
 }
 
@@ -249,7 +256,7 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
     session.bound = false;
     solution = solve_from(session, first, from.multipliers, watched);
     const Certificate& found = solution.certificate;
-    if (!from.q.empty() && found.verdict != Verdict::converged &&
+    if (!from.q.empty() && !from.only && found.verdict != Verdict::converged &&
         !was_stopped(session, solution, by_user, session.seconds.solve)) {
       const std::string first_verdict = verdict_name(found.verdict), first_reason = found.reason;
       bind_anew(session, {});
@@ -272,6 +279,15 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
   add(solution.warnings);
   solution.warnings = std::move(warnings);
   session.seconds.total += since(begin);
+  return solution;
+}
+
+Solution certified(Session& session, SolverResult found) {
+  session.seconds.certificate = 0.0;
+  session.bound = false;
+  Solution solution;
+  solution.solver = std::move(found);
+  judge(session, solution.solver.q, solution);
   return solution;
 }
 

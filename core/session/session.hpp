@@ -58,4 +58,11 @@ std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& re
 Solution solve(Session& session, const std::function<bool(const IterationRecord&)>& progress,
                const Start* start = nullptr);
 
+/// Certifies a point that was found elsewhere, in the session as it stands.
+Solution certified(Session& session, SolverResult found);
+
+/// New constraints and a new assembly, bound at q (empty: at the scene's own start), as if nothing had been solved
+/// before. Where that fails, which throws std::runtime_error, the old ones stay: they fit each other.
+void bind_anew(Session& session, const std::vector<double>& q);
+
 }  // namespace bowstring

@@ -161,6 +161,16 @@ std::vector<double> recorded_coordinates(const Scene& scene, const RecordedState
   return q;
 }
 
+void hold_ends(const Scene& scene, std::vector<double>& q) {
+  std::size_t first = 0;
+  for (const auto& curve : scene.curves) {
+    for (const FieldDeclaration& field : curve->declaration.fields) {
+      hold(field, q.data() + first);
+      first += at(field.count * coordinate_count(field.manifold, field.dimension));
+    }
+  }
+}
+
 std::vector<double> recorded_multipliers(const std::vector<RowOrigin>& rows, const RecordedState& state,
                                          const std::string& name, std::vector<std::string>& warnings) {
   std::vector<double> out;

@@ -20,12 +20,16 @@ struct Start {
   std::vector<double> multipliers;    ///< one per row, or empty
   std::vector<std::string> warnings;  ///< what of a recorded state was not taken
   StartOrigin origin;
+  bool only = false;  ///< no second attempt from the scene's own start where the solve from this one fails
 };
 
 /// The coordinates of a recorded state for this scene. What the scene holds stays where the scene's own start has it:
 /// ends may have been moved since. All that does not fit is told in `flaws`, and then there are none.
 std::vector<double> recorded_coordinates(const Scene& scene, const RecordedState& state, const std::string& name,
                                          std::vector<DocumentFlaw>& flaws, std::vector<std::string>& warnings);
+
+/// Puts what the scene holds where its own start has it.
+void hold_ends(const Scene& scene, std::vector<double>& q);
 
 /// The multipliers of a recorded state for these rows. Those of a group of another count are zero, with a warning.
 std::vector<double> recorded_multipliers(const std::vector<RowOrigin>& rows, const RecordedState& state,

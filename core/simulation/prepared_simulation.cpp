@@ -33,6 +33,8 @@ class PreparedSimulation::Inside {
     if (session != nullptr) return true;
     ++builds;
     session = prepare(request, plugins, refusal);
+    if (session != nullptr) refuse_procedures(session->composition, refusal);
+    if (refusal.any()) session.reset();
     if (session != nullptr) provenance = provenance_json(*session, plugins);
     return session != nullptr;
   }
@@ -80,6 +82,17 @@ class PreparedSimulation::Inside {
   int builds = 0;
 
  private:
+  /// One state is solved here, from wherever the caller wants.
+  static void refuse_procedures(const Composition& composition, Refusal& refusal) {
+    const auto refuse = [&](const std::string& position, const char* table) {
+      refusal.errors.push_back({position, std::string(table) + " in a composition that is prepared",
+                                "a composition of one state", "remove it, or solve the Simulation itself"});
+    };
+    if (!composition.steps.empty()) refuse(composition.steps.front().position, "[[step]]");
+    if (composition.continuation.given) refuse(composition.continuation.position, "[continuation]");
+    if (composition.multistart.given) refuse(composition.multistart.position, "[multistart]");
+  }
+
   Override current(const std::string& path) const {
     for (const Override& one : request.overrides) {
       if (one.path == path) return one;

@@ -20,6 +20,8 @@ namespace bowstring {
 /// `solve` reads and builds the composition again. Either way a solve gives the bits that a Simulation with the same
 /// values gives from the same start. Files are read when something is built, not with every solve.
 ///
+/// A composition with [[step]], [continuation] or [multistart] is refused: here the caller says what comes after what.
+///
 /// Errors, progress and plugins are as with Simulation. One thread at a time may use it.
 class PreparedSimulation {
  public:

@@ -39,7 +39,7 @@ std::vector<std::string> Simulation::plugin_path() const { return composition_pl
 Refusal Simulation::check(Registry& plugins) const {
   Refusal refusal;
   try {
-    prepare(request_, plugins, refusal);
+    Procedure::prepare(request_, plugins, refusal);
   } catch (...) {
     refusal = solving::broken_down();
   }
@@ -58,15 +58,16 @@ SimulationResult Simulation::solve_request(Registry& plugins, const Progress& pr
                                            const SimulationResult* from) const {
   try {
     Refusal refusal;
-    const std::unique_ptr<Session> session = prepare(request_, plugins, refusal);
-    if (session == nullptr) return solving::refused(std::move(refusal));
+    const std::unique_ptr<Procedure> procedure = Procedure::prepare(request_, plugins, refusal);
+    if (procedure == nullptr) return solving::refused(std::move(refusal));
     Start start;
     if (from != nullptr) {
-      if (!solving::start_from(*session, *from, start, refusal)) return solving::refused(std::move(refusal));
+      if (!solving::start_from(procedure->session(), *from, start, refusal)) {
+        return solving::refused(std::move(refusal));
+      }
       start.origin.sha256 = sha256_hex(from->json());
     }
-    return solving::solve_session(*session, provenance_json(*session, plugins), progress,
-                                  from != nullptr ? &start : nullptr);
+    return solving::solve_procedure(*procedure, progress, from != nullptr ? &start : nullptr);
   } catch (...) {
     return solving::refused(solving::broken_down());
   }

@@ -21,10 +21,9 @@ class SimulationData {
   std::string reason;
   std::vector<std::string> warnings;
   std::vector<std::string> input_files;  ///< absolute
-  SessionRecord session;
-  Solution solution;
-  Readings readings;
+  std::vector<StateResult> states;       ///< the last one is the result
 
+  const StateResult& state() const noexcept { return states.back(); }
   bool solved() const noexcept { return !refusal.any(); }
   const std::string& text() const;                 ///< of the document
   const nlohmann::ordered_json& document() const;  ///< null where refused

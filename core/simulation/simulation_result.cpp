@@ -70,7 +70,7 @@ bool add_row(const Json& value, NumberTable& table) {
 
 const std::string& SimulationData::text() const {
   std::call_once(text_once_, [&] {
-    if (solved()) text_ = result_document(session, solution, readings);
+    if (solved()) text_ = result_document(states);
   });
   return text_;
 }
@@ -84,7 +84,7 @@ const nlohmann::ordered_json& SimulationData::document() const {
 
 const nlohmann::ordered_json& SimulationData::scalars() const {
   std::call_once(scalars_once_, [&] {
-    if (solved()) scalars_ = Json::parse(result_scalars(session, solution, readings));
+    if (solved()) scalars_ = Json::parse(result_scalars(state()));
   });
   return scalars_;
 }

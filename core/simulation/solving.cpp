@@ -87,8 +87,9 @@ bool start_from(const Session& session, const SimulationResult& from, Start& sta
                               "a result that was solved", ""});
     return false;
   }
+  const StateResult& last = data.state();
   const RecordedState state =
-      record_state(*data.session.scene, data.session.rows, data.solution.q, data.solution.multipliers);
+      record_state(*last.session.scene, last.session.rows, last.solution.q, last.solution.multipliers);
   std::vector<DocumentFlaw> flaws;
   const std::string name = "the result";
   start.q = recorded_coordinates(*session.scene, state, name, flaws, start.warnings);
@@ -100,19 +101,39 @@ bool start_from(const Session& session, const SimulationResult& from, Start& sta
   return true;
 }
 
+namespace {
+
+SimulationResult made_of(std::vector<StateResult> states, const std::vector<std::string>& input_files,
+                         const std::string& problem) {
+  auto data = std::make_shared<SimulationData>();
+  data->states = std::move(states);
+  const StateResult& last = data->state();
+  data->status = last.solution.certificate.verdict;
+  data->reason = last.solution.certificate.reason;
+  data->warnings = last.solution.warnings;
+  if (!last.readable.ok()) data->warnings.push_back(last.readable.text);
+  if (!problem.empty()) data->warnings.push_back(problem);
+  data->input_files = input_files;
+  return SimulationResult(std::move(data));
+}
+
+}  // namespace
+
 SimulationResult solve_session(Session& session, std::string provenance, const Progress& progress, const Start* start) {
   GuardedProgress guarded(progress);
-  auto data = std::make_shared<SimulationData>();
-  data->solution = solve(session, std::ref(guarded), start);
-  const Status readable = read_solution(session, data->solution, data->readings);
-  data->session = record_of(session, std::move(provenance));
-  data->status = data->solution.certificate.verdict;
-  data->reason = data->solution.certificate.reason;
-  data->warnings = data->solution.warnings;
-  if (!readable.ok()) data->warnings.push_back(readable.text);
-  if (!guarded.problem().empty()) data->warnings.push_back(guarded.problem());
-  data->input_files = session.composition.input_files;
-  return SimulationResult(std::move(data));
+  StateResult state;
+  state.solution = solve(session, std::ref(guarded), start);
+  state.readable = read_solution(session, state.solution, state.readings);
+  state.session = record_of(session, std::move(provenance));
+  std::vector<StateResult> states;
+  states.push_back(std::move(state));
+  return made_of(std::move(states), session.composition.input_files, guarded.problem());
+}
+
+SimulationResult solve_procedure(Procedure& procedure, const Progress& progress, const Start* start) {
+  GuardedProgress guarded(progress);
+  std::vector<StateResult> states = procedure.run(std::ref(guarded), start);
+  return made_of(std::move(states), procedure.input_files(), guarded.problem());
 }
 
 }  // namespace bowstring::solving

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/procedure/procedure.hpp"
 #include "core/session/session.hpp"
 #include "core/simulation/simulation.hpp"
 
@@ -28,5 +29,8 @@ bool start_from(const Session& session, const SimulationResult& from, Start& sta
 /// `provenance`: of the document. `start` as in `solve` of a session.
 SimulationResult solve_session(Session& session, std::string provenance, const Progress& progress,
                                const Start* start = nullptr);
+
+/// The whole of what a composition asks for. `start`: of its first state.
+SimulationResult solve_procedure(Procedure& procedure, const Progress& progress, const Start* start = nullptr);
 
 }  // namespace bowstring::solving

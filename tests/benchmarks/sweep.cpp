@@ -69,9 +69,9 @@ Figures sweep(PreparedSimulation& simulation, bool warm, int points) {
     out.point += milliseconds(begin) / points;
     if (!peak.ok()) throw std::runtime_error(peak.error);
     const SimulationData& data = result.data();
-    out.solver += 1e3 * data.session.seconds.solve / points;
-    out.certificate += 1e3 * data.session.seconds.certificate / points;
-    out.iterations += static_cast<double>(data.solution.solver.iterations) / points;
+    out.solver += 1e3 * data.state().session.seconds.solve / points;
+    out.certificate += 1e3 * data.state().session.seconds.certificate / points;
+    out.iterations += static_cast<double>(data.state().solution.solver.iterations) / points;
     out.converged += result.converged() ? 1 : 0;
     out.energies.push_back(result.number("energy.total").value);
   }

@@ -30,8 +30,8 @@
 #include <nlohmann/json.hpp>
 #include <toml++/toml.h>
 
+#include "core/procedure/procedure.hpp"
 #include "core/result/document.hpp"
-#include "core/session/session.hpp"
 #include "plugins/host/plugin_host.hpp"
 
 namespace {
@@ -124,18 +124,15 @@ Json solve(const std::string& file, const toml::table& run, const std::string& d
   options.executable_path = (build == nullptr ? std::string("build") : std::string(build)) + "/bowstring";
   bowstring::PluginHost host(options);
   bowstring::Refusal refusal;
-  const auto session = bowstring::prepare(request, host, refusal);
-  if (session == nullptr) {
+  const auto procedure = bowstring::Procedure::prepare(request, host, refusal);
+  if (procedure == nullptr) {
     for (const bowstring::InputError& error : refusal.errors) std::printf("  refused: %s\n", error.text().c_str());
     if (!refusal.plugin_failure.ok()) std::printf("  refused: %s\n", refusal.plugin_failure.text.c_str());
     return nullptr;
   }
-  const bowstring::Solution solution = bowstring::solve(*session, {});
-  bowstring::Readings readings;
-  if (const bowstring::Status status = bowstring::read_solution(*session, solution, readings); !status.ok()) {
-    std::printf("  %s\n", status.text.c_str());
-  }
-  return Json::parse(bowstring::result_document(*session, solution, readings, host));
+  const std::vector<bowstring::StateResult> states = procedure->run({});
+  if (!states.back().readable.ok()) std::printf("  %s\n", states.back().readable.text.c_str());
+  return Json::parse(bowstring::result_document(states));
 }
 
 /// Slope of log(error) over log(1/step), by least squares; errors are differences to the limit that makes the fit best.

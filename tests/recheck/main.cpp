@@ -36,11 +36,11 @@ void print_numbers(const std::string& file, const recheck::Findings& found) {
   std::printf("energy difference %.2e N mm | ", found.energy_difference.value);
 }
 
-/// Prints one line; answers whether the document's claim stands.
-bool judge(const std::string& file, bool allow_unknown, Tally& tally) {
+/// Prints one line; answers whether the claim of one state of a document stands.
+bool judge_state(const std::string& label, const recheck::Result& result, bool allow_unknown, Tally& tally) {
   try {
-    const recheck::Findings found = recheck::recheck(recheck::read_result(file));
-    print_numbers(file, found);
+    const recheck::Findings found = recheck::recheck(result);
+    print_numbers(label, found);
     const std::string unknown = joined(found.not_rechecked);
     if (!unknown.empty()) std::printf("not rechecked: %s | ", unknown.c_str());
     if (!found.claims()) {
@@ -57,6 +57,21 @@ bool judge(const std::string& file, bool allow_unknown, Tally& tally) {
     }
     ++(holds ? tally.hold : tally.fail);
     return holds;
+  } catch (const std::exception& error) {
+    std::printf("%s: DOES NOT HOLD: %s\n", label.c_str(), error.what());
+    ++tally.fail;
+    return false;
+  }
+}
+
+/// Prints a line for each state; answers whether every claim of the document stands.
+bool judge(const std::string& file, bool allow_unknown, Tally& tally) {
+  bool all = true;
+  try {
+    for (const auto& [name, result] : recheck::read_results(file)) {
+      all = judge_state(name.empty() ? file : file + ", " + name, result, allow_unknown, tally) && all;
+    }
+    return all;
   } catch (const std::exception& error) {
     std::printf("%s: DOES NOT HOLD: %s\n", file.c_str(), error.what());
     ++tally.fail;

@@ -58,7 +58,7 @@ void write(const Json& document, const std::string& file) { std::ofstream(file) 
 Findings found_in(const Json& document) {
   const Folder folder;
   write(document, folder.file("result.json"));
-  return recheck(read_result(folder.file("result.json")));
+  return recheck(read_results(folder.file("result.json")).front().second);
 }
 
 std::string joined(const std::vector<std::string>& parts) {

@@ -297,11 +297,9 @@ double number_of(const Json& value) {
   fail("a quantity of the composition is no number: " + value.dump());
 }
 
-Result read_result(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) fail("cannot be read");
-  const Json document = Json::parse(stream);
-  if (document.value("format", "") != "bowstring.result/1") fail("is no bowstring.result/1 document");
+namespace {
+
+Result read_state_of(const Json& document) {
   const Json& composition = document.at("composition");
   Result out;
   out.status = document.at("status").get<std::string>();
@@ -309,8 +307,6 @@ Result read_result(const std::string& file) {
   if (composition.contains("energy")) out.energies = composition["energy"];
   if (composition.contains("constraint")) out.constraints = composition["constraint"];
   if (composition.at("enforcement").at("type") != "kkt") out.unknown.push_back("enforcement");
-  if (!document.at("equilibria").empty()) out.unknown.push_back("equilibria");
-  if (document.contains("states")) out.unknown.push_back("states");
   read_thresholds(composition, out.thresholds);
   for (const Json& entry : document.at("curves")) {
     out.curves.push_back(read_curve(composition, entry, out.dimension));
@@ -322,6 +318,27 @@ Result read_result(const std::string& file) {
   for (const auto& [name, value] : document.at("energy").items()) out.energy[name] = finite_or_nan(value);
   out.stationarity = finite_or_nan(document.at("certificate").at("stationarity"));
   read_contacts(document.at("contacts"), out.contacts);
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, Result>> read_results(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) fail("cannot be read");
+  const Json document = Json::parse(stream);
+  if (document.value("format", "") != "bowstring.result/1") fail("is no bowstring.result/1 document");
+  std::vector<std::pair<std::string, Result>> out;
+  out.emplace_back("", read_state_of(document));
+  const Json& states = document.at("states");
+  for (std::size_t k = 0; k + 1 < states.size(); ++k) {  // the last one is the document's own
+    out.emplace_back("state '" + states[k].at("name").get<std::string>() + "'", read_state_of(states[k]));
+  }
+  for (std::size_t k = 0; k < document.at("equilibria").size(); ++k) {
+    Json one = document;
+    one.update(document.at("equilibria")[k]);
+    out.emplace_back("equilibrium " + std::to_string(k + 1), read_state_of(one));
+  }
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -90,7 +91,8 @@ struct Result {
 };
 
 /// Throws std::runtime_error saying what the document lacks.
-Result read_result(const std::string& file);
+/// The document's own state, "", then those of its other steps and its equilibria.
+std::vector<std::pair<std::string, Result>> read_results(const std::string& file);
 
 /// A quantity of the composition: a number, or a number and its unit in one text.
 double number_of(const Json& value);

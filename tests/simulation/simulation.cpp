@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "core/session/session.hpp"
-#include "core/result/solved.hpp"
+#include "core/procedure/procedure.hpp"
+#include "core/result/document.hpp"
 #include "tests/simulation/scenes.hpp"
 
 namespace bowstring {
@@ -18,17 +18,17 @@ TEST_CASE("a simulation gives the document of the command's own way, bit for bit
   request.file = scene_file("planar-iliac-smooth.toml");
   request.overrides = {{"vessel.iliac.geometry.nodes", "24"}, {"energy.axial-tension.tension", "12.5 N"}};
   Refusal refusal;
-  const auto session = prepare(request, plugins(), refusal);
-  REQUIRE_MESSAGE(session != nullptr, refusal.text());
-  const Solved solved = solve_and_read(*session, plugins(), {});
-  REQUIRE(solved.solution.certificate.verdict == Verdict::converged);
+  const auto procedure = Procedure::prepare(request, plugins(), refusal);
+  REQUIRE_MESSAGE(procedure != nullptr, refusal.text());
+  const std::vector<StateResult> solved = procedure->run({});
+  REQUIRE(solved.back().solution.certificate.verdict == Verdict::converged);
 
   Simulation simulation = small_planar();
   simulation.set("energy.axial-tension.tension", 12.5, "N");
   const SimulationResult result = simulation.solve(plugins());
   REQUIRE_MESSAGE(result.ok(), result.refusal().text());
   CHECK(result.converged());
-  CHECK(difference(result.json(), solved.document) == "");
+  CHECK(difference(result.json(), result_document(solved)) == "");
 }
 
 TEST_CASE("values are set as text, numbers, numbers with a unit, and flags; the last one of a path counts") {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/result/solved.hpp"
+#include "core/result/quantities.hpp"
 #include "tests/solvers/solver_case.hpp"
 
 namespace bowstring::testing {
