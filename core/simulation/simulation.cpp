@@ -58,15 +58,12 @@ SimulationResult Simulation::solve_request(Registry& plugins, const Progress& pr
                                            const SimulationResult* from) const {
   try {
     Refusal refusal;
-    const std::unique_ptr<Session> session = prepare(request_, plugins, refusal);
+    CarriedState carried;
+    if (from != nullptr && !solving::state_of(*from, carried, refusal)) return solving::refused(std::move(refusal));
+    const std::unique_ptr<Session> session = prepare(request_, plugins, refusal, from != nullptr ? &carried : nullptr);
     if (session == nullptr) return solving::refused(std::move(refusal));
-    Start start;
-    if (from != nullptr) {
-      if (!solving::start_from(*session, *from, start, refusal)) return solving::refused(std::move(refusal));
-      start.origin.sha256 = sha256_hex(from->json());
-    }
-    return solving::solve_session(*session, provenance_json(*session, plugins), progress,
-                                  from != nullptr ? &start : nullptr);
+    if (from != nullptr) session->start.origin.sha256 = sha256_hex(from->json());
+    return solving::solve_session(*session, provenance_json(*session, plugins), progress);
   } catch (...) {
     return solving::refused(solving::broken_down());
   }
