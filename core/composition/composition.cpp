@@ -31,7 +31,7 @@ const std::vector<Node>& tables_of(const Node& root, const std::string& name, Re
   return none;
 }
 
-Composition read_composition(const Node& root, Reading& reading) {
+Composition read_composition(const Node& root, bool from_memory, Reading& reading) {
   Report& report = reading.report;
   Composition composition;
   check_keys(root, "the composition", top_level_names(), later_table_names(), "remove it", report);
@@ -57,7 +57,7 @@ Composition read_composition(const Node& root, Reading& reading) {
   composition.enforcement = read_enforcement(root, reading);
   composition.solver = read_solver(root, reading);
   composition.certificate = read_certificate(root, report);
-  composition.start = read_start(root, report);
+  composition.start = read_start(root, from_memory, report);
   composition.continuation = read_continuation(root, report);
   composition.multistart = read_multistart(root, report);
   check_duplicates(root, report);
@@ -97,7 +97,7 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
   const std::optional<SourceTree> sources = read_sources(request, report);
   if (sources) {
     Reading reading{registry, report, outcome.plugin_failure};
-    Composition composition = read_composition(sources->root, reading);
+    Composition composition = read_composition(sources->root, request.from_memory, reading);
     composition.file = request.file;
     composition.input_files = sources->files;
     composition.steps = sources->steps;

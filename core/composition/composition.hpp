@@ -104,9 +104,10 @@ struct CertificateTable {
 
 /// Where a solve starts, if not at the composition's own start.
 struct StartTable {
-  std::string from;      ///< a result document, absolute; "": none
-  std::string position;  ///< of `from`
-  std::string name;      ///< "the start 'result.json'", for messages
+  std::string from;               ///< a result document, absolute; "": none
+  std::string position;           ///< of `from`
+  std::string name;               ///< "the start 'result.json'", for messages
+  bool rest_is_previous = false;  ///< the state becomes the rest state of the vessels; else that is State 1
   std::shared_ptr<const RecordedState> state;
 };
 
@@ -186,6 +187,8 @@ struct CompositionRequest {
   /// The composition itself. `file`, which need not exist, is then what errors call it and where its paths start.
   std::optional<std::string> text = std::nullopt;
   int step = 0;  ///< of a composition with steps: the one whose overrides, after those before it, count
+  /// A state is handed over in memory: [start] needs no 'from', and the document that it names is not read.
+  bool from_memory = false;
 };
 
 struct CompositionOutcome {

@@ -1,6 +1,8 @@
 #include "core/composition/recorded_state.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -22,6 +24,48 @@ std::string shown(const Json& value) {
   return text.size() > longest ? text.substr(0, longest) + "…" : text;
 }
 
+std::string text_of(const Json& table, const char* key) {
+  const auto found = table.find(key);
+  return found != table.end() && found->is_string() ? found->get<std::string>() : "";
+}
+
+/// A list of numbers, or of lists of them, one after the other; what is none is not a number.
+void add_numbers(const Json& value, std::vector<double>& out) {
+  if (value.is_array()) {
+    for (const Json& entry : value) add_numbers(entry, out);
+  } else {
+    out.push_back(value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
+std::vector<double> numbers_of(const Json& table, const char* key) {
+  std::vector<double> out;
+  const auto found = table.find(key);
+  if (found != table.end() && found->is_array()) add_numbers(*found, out);
+  return out;
+}
+
+RecordedCurve curve_of(const Json& entry) {
+  RecordedCurve out;
+  out.name = text_of(entry, "name");
+  out.kind = text_of(entry, "kind") == "wire" ? CurveKind::wire : CurveKind::vessel;
+  out.points = numbers_of(entry, "points");
+  const auto points = entry.find("points");
+  if (points != entry.end() && points->is_array() && !points->empty() && points->front().is_array()) {
+    out.dimension = static_cast<int>(points->front().size());
+  }
+  out.frames = numbers_of(entry, "frames");
+  out.share = numbers_of(entry, "material_share");
+  out.along = text_of(entry, "along");
+  const std::vector<double> span = numbers_of(entry, "span_mm");
+  if (span.size() == 2) out.along_begin = span[0], out.along_end = span[1];
+  const auto held = entry.find("held_frames");
+  for (std::size_t e = 0; held != entry.end() && held->is_array() && e < std::min<std::size_t>(2, held->size()); ++e) {
+    if ((*held)[e].is_array()) add_numbers((*held)[e], out.held_frame[e]);
+  }
+  return out;
+}
+
 class StateReader {
  public:
   StateReader(const Json& document, const std::string& name, std::vector<DocumentFlaw>& flaws)
@@ -37,6 +81,7 @@ class StateReader {
       read_numbers(*groups, "multipliers", out.multipliers);
     }
     read_manifolds(out.fields);
+    read_curves(out.curves);
     return out;
   }
 
@@ -103,12 +148,75 @@ class StateReader {
     }
   }
 
+  void read_curves(std::vector<RecordedCurve>& curves) const {
+    const auto list = document_.find("curves");
+    if (list == document_.end() || !list->is_array()) return;
+    for (const Json& entry : *list) {
+      if (!entry.is_object() || text_of(entry, "name").empty()) continue;
+      curves.push_back(curve_of(entry));
+      curves.back().kinematics = kinematics_of(curves.back());
+      find_flaw(curves.back());
+    }
+  }
+
+  /// "nodes" of the wire or vessel of that name in the composition; "" where it does not say.
+  std::string kinematics_of(const RecordedCurve& curve) const {
+    const auto composition = document_.find("composition");
+    const char* tables = curve.kind == CurveKind::wire ? "wire" : "vessel";
+    if (composition == document_.end() || !composition->is_object() || !composition->contains(tables)) return "";
+    for (const Json& table : (*composition)[tables]) {
+      if (!table.is_object() || text_of(table, "name") != curve.name) continue;
+      const auto kinematics = table.find("kinematics");
+      return kinematics != table.end() && kinematics->is_object() ? text_of(*kinematics, "type") : "";
+    }
+    return "";
+  }
+
   const Json& document_;
   const std::string& name_;
   std::vector<DocumentFlaw>& flaws_;
 };
 
 }  // namespace
+
+void find_flaw(RecordedCurve& curve) {
+  constexpr double unit_length = 1e-6;
+  const auto finite = [](const std::vector<double>& numbers) {
+    return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
+  };
+  const auto is_rotation = [&](const double* q) {
+    return std::fabs(std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]) - 1.0) <= unit_length;
+  };
+  const std::size_t nodes = curve.share.size(), d = static_cast<std::size_t>(curve.dimension);
+  curve.flaw.clear();
+  if (nodes == 0) {
+    curve.flaw = "no 'material_share', which older versions did not write";
+  } else if (nodes < 3 || (d != 2 && d != 3) || curve.points.size() != nodes * d || !finite(curve.points)) {
+    curve.flaw = "'points' that are not known";
+  } else if (!finite(curve.share) || curve.share.front() != 0.0 || curve.share.back() != 1.0 ||
+             std::adjacent_find(curve.share.begin(), curve.share.end(), [](double a, double b) { return a >= b; }) !=
+                 curve.share.end()) {
+    curve.flaw = "a 'material_share' that does not grow from 0 to 1";
+  } else if (curve.frames.size() != 4 * nodes || !finite(curve.frames)) {
+    curve.flaw = "'frames' that are not known";
+  }
+  for (std::size_t i = 0; curve.flaw.empty() && i < nodes; ++i) {
+    if (!is_rotation(curve.frames.data() + 4 * i)) curve.flaw = "'frames' that are no unit quaternions";
+  }
+  for (const std::vector<double>& held : curve.held_frame) {
+    if (!curve.flaw.empty() || held.empty()) continue;
+    if (held.size() != 4 || !finite(held) || !is_rotation(held.data())) {
+      curve.flaw = "'held_frames' that are no unit quaternions";
+    }
+  }
+}
+
+const RecordedCurve* RecordedState::find(const std::string& curve) const noexcept {
+  for (const RecordedCurve& one : curves) {
+    if (one.name == curve) return &one;
+  }
+  return nullptr;
+}
 
 RecordedState read_recorded_state(const std::string& text, const std::string& name, std::vector<DocumentFlaw>& flaws) {
   Json document;

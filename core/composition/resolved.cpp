@@ -230,7 +230,11 @@ std::string resolved_json(const Composition& composition) {
   root["enforcement"] = component_json(composition.enforcement);
   root["solver"] = component_json(composition.solver);
   root["certificate"] = certificate_json(composition.certificate);
-  if (!composition.start.from.empty()) root["start"]["from"] = composition.start.from;
+  const StartTable& start = composition.start;
+  if (!start.from.empty()) root["start"]["from"] = start.from;
+  if (!start.from.empty() || start.rest_is_previous) {
+    root["start"]["rest"] = start.rest_is_previous ? "previous" : "state-1";
+  }
   if (composition.continuation.given) root["continuation"] = continuation_json(composition.continuation);
   if (composition.multistart.given) root["multistart"] = multistart_json(composition.multistart);
   return root.dump(-1, ' ', false, Json::error_handler_t::replace);

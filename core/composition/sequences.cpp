@@ -201,7 +201,14 @@ void apply_steps(Node& root, int last, Report& report) {
       }
     }
   }
-  if (last > 0) root.erase("start");  // a step begins where the one before it ended
+  if (last <= 0 || last >= static_cast<int>(steps.size())) return;
+  root.erase("start");  // a step begins where the one before it ended
+  if (const Entry* rest = steps[static_cast<std::size_t>(last)].find("rest")) {
+    Node start;
+    start.position = rest->position;
+    start.set({"rest", rest->position, rest->value});
+    root.set({"start", rest->position, std::move(start)});
+  }
 }
 
 }  // namespace bowstring

@@ -6,8 +6,8 @@
 
 namespace bowstring {
 
-/// [start]: empty where the file has none. Reads the document that it names; whether its state fits is known when the
-/// scene has been built.
-StartTable read_start(const Node& root, Report& report);
+/// [start]: empty where the file has none. Reads the document that it names, unless a state is handed over in memory;
+/// whether it fits is known when the scene has been built.
+StartTable read_start(const Node& root, bool from_memory, Report& report);
 
 }  // namespace bowstring

@@ -4,6 +4,8 @@
 
 #include "core/contact/centerline.hpp"
 #include "core/curve/arc_length.hpp"
+#include "core/lie/s2.hpp"
+#include "core/model/carried_curve.hpp"
 #include "core/model/declarations.hpp"
 #include "core/model/manifold.hpp"
 #include "core/model/scene.hpp"
@@ -32,23 +34,28 @@ std::string point_text(const double* p, int dimension) {
 
 class Builder {
  public:
-  Builder(const Composition& composition, const SolverTraits& traits)
-      : composition_(composition), traits_(traits), scene_(std::make_unique<Scene>()) {
+  Builder(const Composition& composition, const SolverTraits& traits, const CarriedState* carried)
+      : composition_(composition), traits_(traits), carried_(carried), scene_(std::make_unique<Scene>()) {
     scene_->dimension = composition.dimension;
+    new_rest_ = carried != nullptr && carried->becomes_rest.value_or(composition.start.rest_is_previous);
   }
 
   SceneOutcome build() {
-    for (const VesselTable& table : composition_.vessels) add_vessel(table);
+    if (carried_ != nullptr) compare_with_carried();
+    if (going()) {
+      for (const VesselTable& table : composition_.vessels) add_vessel(table);
+    }
     if (going()) {
       for (const WireTable& table : composition_.wires) add_wire(table);
     }
+    if (going() && carried_ != nullptr) carry();
     if (going()) declare_energies();
     if (going()) declare_kinematics();
     if (going()) sample_laws();
     if (going()) declare_constraints();
     if (going()) check_loads();
     if (!going()) scene_.reset();
-    return {std::move(scene_), std::move(errors_), std::move(plugin_failure_)};
+    return {std::move(scene_), std::move(carried_curves_), std::move(errors_), std::move(plugin_failure_)};
   }
 
  private:
@@ -79,6 +86,13 @@ class Builder {
     return false;
   }
 
+  void refuse_carried(std::vector<DocumentFlaw>& flaws);
+  void compare_with_carried();
+  void carry();
+  void set_rest(Curve& curve);
+  void set_rest_rotation(Curve& curve, const RecordedCurve& recorded, int end);
+  void move_from_start(const Curve& curve);
+  void set_held_places(Curve& curve, const double (&moves)[2][3]) const;
   void set_geometry(Curve& curve, CurveGeometry&& geometry);
   bool check_points(const Curve& curve, const std::string& position);
   void set_ends(Curve& curve, const EndTable* ends);
@@ -128,6 +142,9 @@ class Builder {
 
   const Composition& composition_;
   SolverTraits traits_;
+  const CarriedState* carried_;
+  bool new_rest_ = false;  // the carried state becomes the rest state
+  CarriedCurves carried_curves_;
   std::unique_ptr<Scene> scene_;
   std::vector<InputError> errors_;
   Status plugin_failure_;
@@ -138,6 +155,103 @@ class Builder {
   std::vector<double> free_axes_[2];  // unit vectors, three numbers each
   std::vector<HeldAxis> oblique_[2];
 };
+
+void Builder::refuse_carried(std::vector<DocumentFlaw>& flaws) {
+  for (DocumentFlaw& flaw : flaws) {
+    error(carried_->position, std::move(flaw.found), std::move(flaw.expected), std::move(flaw.mend));
+  }
+}
+
+void Builder::compare_with_carried() {
+  std::vector<NamedKind> curves;
+  for (const VesselTable& table : composition_.vessels) curves.emplace_back(table.name, CurveKind::vessel);
+  for (const WireTable& table : composition_.wires) curves.emplace_back(table.name, CurveKind::wire);
+  std::vector<DocumentFlaw> flaws;
+  compare_scenes(composition_.dimension, curves, *carried_, flaws);
+  for (const VesselTable& table : composition_.vessels) {
+    if (!new_rest_ || !flaws.empty()) break;
+    const RecordedCurve* recorded = carried_->state->find(table.name);
+    if (recorded != nullptr && recorded->flaw.empty()) continue;
+    flaws.push_back({carried_->name + " has '" + table.name + "' with " +
+                         (recorded != nullptr ? recorded->flaw : "no entry in 'curves'"),
+                     "its shape, which becomes the rest state", "start from a result that this version wrote"});
+  }
+  refuse_carried(flaws);
+}
+
+void Builder::carry() {
+  std::vector<DocumentFlaw> flaws;
+  carried_curves_ = carried_curves(*scene_, *carried_, flaws);
+  refuse_carried(flaws);
+  if (!going()) return;
+  for (const auto& curve : scene_->curves) {
+    const CarriedCurve& carried = carried_curves_.curves[at(curve->view.index)];
+    if (carried.recorded) curve->previous = carried.points;
+    curve->view.previous = curve->previous.empty() ? nullptr : curve->previous.data();
+  }
+}
+
+/// The carried shape becomes the vessel's reference; its ends stay where State 1 has them moved and turned to.
+void Builder::set_rest(Curve& curve) {
+  const RecordedCurve& recorded = *carried_->state->find(curve.name);
+  curve.arc = polyline_arc(curve.reference, composition_.dimension);
+  std::vector<double> points = interpolated_points(recorded, material_shares(curve));
+  curve.state1 = std::move(curve.reference);
+  curve.reference = curve.start = std::move(points);
+  for (int e = 0; e < 2; ++e) {
+    if (!curve.held_frame[e].empty()) set_rest_rotation(curve, recorded, e);
+  }
+}
+
+/// What a clamp holds in the rest state, and how far it is turned from there.
+void Builder::set_rest_rotation(Curve& curve, const RecordedCurve& recorded, int e) {
+  EndCondition& end = curve.view.end[e];
+  const lie::Rotation now = lie::Rotation::load(curve.held_frame[e].data());
+  Vector3 tangent, turn;
+  if (!recorded.held_frame[e].empty()) {
+    const lie::Rotation then = lie::Rotation::load(recorded.held_frame[e].data());
+    tangent = then.first_axis();
+    if (recorded.held_frame[e] != curve.held_frame[e]) turn = lie::log(now * then.inverse());
+  } else {
+    tangent = Vector3::load(end_tangent(curve, {}, e, {}).data());
+    const lie::Rotation free = lie::frame_from_tangent(tangent);
+    turn = lie::log(lie::transport(free, now.first_axis()) * free.inverse());
+  }
+  tangent.store(end.tangent);
+  turn.store(end.turn);
+  end.twist = 0.0;
+  turns_[e] = {turn, 0.0};
+}
+
+/// What the ends hold is given from State 1: from here on `moves_` leads there from the ends of the start.
+void Builder::move_from_start(const Curve& curve) {
+  const int d = composition_.dimension;
+  for (int e = 0; e < 2; ++e) {
+    const std::size_t first = at((e == 0 ? 0 : curve.view.nodes - 1) * d);
+    const double* from = curve.start.data() + first;
+    double way[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < d; ++k) {
+      if (curve.view.end[e].position_held[k]) way[k] = curve.state1_points()[first + at(k)] + moves_[e][k] - from[k];
+    }
+    for (const HeldAxis& held : oblique_[e]) {
+      double miss = held.value;
+      for (int k = 0; k < d; ++k) miss -= held.axis[k] * from[k];
+      for (int k = 0; k < d; ++k) way[k] += held.axis[k] * miss;
+    }
+    if (curve.view.rigid) std::fill_n(way, 3, 0.0);
+    std::copy_n(way, 3, moves_[e]);
+  }
+}
+
+void Builder::set_held_places(Curve& curve, const double (&moves)[2][3]) const {
+  const int d = composition_.dimension, last = curve.view.nodes - 1;
+  for (const int node : {0, 1, last - 1, last}) {
+    for (int k = 0; k < d; ++k) {
+      if (curve.view.rigid || !position_held(curve.view, node, k)) continue;
+      curve.start[at(node * d + k)] = curve.state1_points()[at(node * d + k)] + moves[node <= 1 ? 0 : 1][k];
+    }
+  }
+}
 
 void Builder::set_geometry(Curve& curve, CurveGeometry&& geometry) {
   curve.view.dimension = composition_.dimension;
@@ -251,6 +365,11 @@ void Builder::set_prescribed(Curve& curve, const EndTable& table, int e) {
   turns_[e].rotation = turn;
   turn.store(end.turn);
   end.twist = turns_[e].twist;
+  if (end.rotation_held && !end.edge_held) {
+    curve.held_frame[e].resize(4);
+    (lie::exp(turn) * lie::frame_from_tangent(Vector3::load(end.tangent)) * lie::about_first_axis(end.twist))
+        .store(curve.held_frame[e].data());
+  }
 
   free_axes_[e].clear();
   oblique_[e].clear();
@@ -312,20 +431,28 @@ void Builder::spread_moves(Curve& curve) const {
 }
 
 void Builder::spread_turns(Curve& curve) const {
+  const std::vector<double> arc =
+      curve.state1.empty() ? curve.arc : polyline_arc(curve.reference, curve.view.dimension);
   curve.start_turn.assign(at(curve.view.nodes - 1), 0.0);
   const auto turns = [](const Turn& turn) { return turn.twist != 0.0 || norm_squared(turn.rotation) > 0.0; };
   if (!turns(turns_[0]) && !turns(turns_[1])) return;
-  bowstring::spread_turns(turns_, curve.view, curve.arc, curve.start, curve.start_turn);
+  bowstring::spread_turns(turns_, curve.view, arc, curve.start, curve.start_turn);
 }
 
 void Builder::finish_view(Curve& curve, const WireTable* wire) {
   const int d = composition_.dimension;
   const int edges = curve.view.nodes - 1;
-  curve.arc = polyline_arc(curve.reference, d);
+  const std::vector<double>& state1 = curve.state1_points();
+  curve.arc = polyline_arc(state1, d);
+  const std::vector<double> rest_arc = curve.state1.empty() ? curve.arc : polyline_arc(curve.reference, d);
+  double moves[2][3];
+  for (int e = 0; e < 2; ++e) std::copy_n(moves_[e], 3, moves[e]);
+  if (new_rest_) move_from_start(curve);
   spread_moves(curve);
   spread_turns(curve);
+  if (new_rest_) set_held_places(curve, moves);
   curve.edge_length.clear();
-  for (int i = 0; i < edges; ++i) curve.edge_length.push_back(curve.arc[at(i + 1)] - curve.arc[at(i)]);
+  for (int i = 0; i < edges; ++i) curve.edge_length.push_back(rest_arc[at(i + 1)] - rest_arc[at(i)]);
 
   curve.fraction.assign(at(edges), 1.0);
   if (wire != nullptr && !wire->spacing.empty()) curve.fraction = wire->spacing;
@@ -342,8 +469,8 @@ void Builder::finish_view(Curve& curve, const WireTable* wire) {
 
   double squared = 0.0;
   for (int k = 0; k < d; ++k) {  // of State 1: the start may have turned an end that is free there
-    const double first = curve.reference[at(k)] + moves_[0][k];
-    const double last = curve.reference[at(edges * d + k)] + moves_[1][k];
+    const double first = state1[at(k)] + moves[0][k];
+    const double last = state1[at(edges * d + k)] + moves[1][k];
     squared += (last - first) * (last - first);
   }
   curve.view.end_distance = std::sqrt(squared);
@@ -362,14 +489,13 @@ void Builder::check_tube(const Curve& curve, const std::string& position) {
   contact::Centerline tube;
   tube.dimension = composition_.dimension;
   tube.nodes = curve.view.nodes;
-  tube.points = curve.reference.data();
+  tube.points = curve.state1_points().data();
   tube.radius = curve.radius.data();
   const contact::NodeMaximum fold = contact::tube_folds(tube);
   if (fold.value < largest_tube_curvature) return;
   error(position,
         "the tube of vessel '" + curve.name + "' folds into itself at s = " + number(curve.arc[at(fold.node)]) +
-            " mm, " +
-            point_text(curve.reference.data() + at(fold.node * composition_.dimension), composition_.dimension) +
+            " mm, " + point_text(tube.points + at(fold.node * composition_.dimension), composition_.dimension) +
             ": radius times curvature is " + number(fold.value, 3) + " (radius " +
             number(curve.radius[at(fold.node)], 3) + " mm, bend radius " +
             number(curve.radius[at(fold.node)] / fold.value, 3) + " mm)",
@@ -407,6 +533,7 @@ void Builder::add_vessel(const VesselTable& table) {
 
   const EndTable ignored[2];
   if (!read_geometry(*curve, table.geometry, table.rigid ? ignored : table.end)) return;
+  if (new_rest_) set_rest(*curve);
   finish_view(*curve);
 
   Profile radius;
@@ -442,7 +569,8 @@ void Builder::add_vessel(const VesselTable& table) {
   scene_->curves.push_back(std::move(curve));
 }
 
-/// The wire's State 1: the part of its vessel's centerline that it spans, on a mesh of its own.
+/// The wire's State 1: the part of its vessel's State 1 centerline that it spans, on a mesh of its own. It starts along
+/// the same part of the vessel's rest state.
 bool Builder::start_wire(Curve& wire, const Curve& vessel, const WireTable& table) {
   const int d = composition_.dimension;
   const double length = vessel.arc.back();
@@ -461,18 +589,20 @@ bool Builder::start_wire(Curve& wire, const Curve& vessel, const WireTable& tabl
   wire.view.dimension = d;
   wire.view.nodes = table.nodes > 0 ? table.nodes : vessel.view.nodes;
   for (int e = 0; e < 2; ++e) tangents_[e] = vessel.state1_tangent[e];
+  const std::vector<double>& state1 = vessel.state1_points();
   if (table.span.empty() && table.spacing.empty() && wire.view.nodes == vessel.view.nodes) {
-    wire.reference = vessel.reference;
+    wire.reference = state1;
+    wire.start = vessel.reference;
   } else {
     if (!grade(wire, table)) return false;
     std::vector<double> share = cumulative_shares(table.spacing, wire.view.nodes - 1);
     for (double& s : share) s = (wire.along_begin + s * (wire.along_end - wire.along_begin)) / length;
-    const Resampled part = resample(vessel.reference, d, share);
+    const Resampled part = resample(state1, d, share);
     wire.reference = part.points;
+    wire.start = vessel.state1.empty() ? part.points : resample(vessel.reference, d, share).points;
     if (wire.along_begin > 0.0) tangents_[0] = part.first_tangent;
     if (wire.along_end < length) tangents_[1] = part.last_tangent;
   }
-  wire.start = wire.reference;
   return true;
 }
 
@@ -718,8 +848,8 @@ void Builder::check_loads() {
 
 }  // namespace
 
-SceneOutcome build_scene(const Composition& composition, const SolverTraits& traits) {
-  return Builder(composition, traits).build();
+SceneOutcome build_scene(const Composition& composition, const SolverTraits& traits, const CarriedState* carried) {
+  return Builder(composition, traits, carried).build();
 }
 
 }  // namespace bowstring

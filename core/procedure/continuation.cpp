@@ -6,6 +6,7 @@
 
 #include "core/procedure/path_follower.hpp"
 #include "core/procedure/summary.hpp"
+#include "core/result/carry.hpp"
 
 namespace bowstring {
 namespace {
@@ -32,11 +33,11 @@ class Walk {
     path_.list = table_.range.list;
   }
 
-  SolvedState run(const Start* start) {
+  SolvedState run() {
     Refusal refusal;
     Session* session = family_.at(0.0, refusal);
     if (session == nullptr) return refused(refusal);
-    solution_ = solve(*session, progress_, start);
+    solution_ = solve(*session, progress_);
     share_ = 0.0;
     add_point(solution_, 0.0, true);
     if (solution_.certificate.verdict != Verdict::converged) {
@@ -295,19 +296,23 @@ class Walk {
 
   bool solve_at(double target) {
     Refusal refusal;
-    const std::vector<double> q = solution_.q, multipliers = solution_.multipliers;
+    const SessionRecord record = record_of(family_.session(), "{}");
+    Readings readings;
+    read_solution(family_.session(), solution_, readings);
+    const CarriedState carried = carry(record, solution_, readings, "the point before");
     Session* session = family_.at(target, refusal);
     if (session == nullptr) {
       failure_ = refusal.text();
       return false;
     }
-    Start start;
-    start.only = true;
-    if (q.size() == static_cast<std::size_t>(session->scene->coordinates)) {
-      start.q = q;
-      hold_ends(*session->scene, start.q);
-      if (multipliers.size() == static_cast<std::size_t>(session->assembly->rows())) start.multipliers = multipliers;
+    std::vector<DocumentFlaw> flaws;
+    Start start = start_from(*session->scene, session->assembly->row_origins(), carried, flaws);
+    if (start.q.empty()) {
+      failure_ = flaws.empty() ? "the point before does not carry over" : flaws.front().found;
+      return false;
     }
+    start.only = true;
+    start.warnings.clear();
     Solution found = solve(*session, progress_, &start);
     if (found.certificate.verdict != Verdict::converged) {
       failure_ = found.certificate.reason;
@@ -347,9 +352,9 @@ const char* critical_name(CriticalPoint::Kind kind) noexcept {
 }
 
 SolvedState walk(const CompositionRequest& request, std::unique_ptr<Session> session,
-                 const ParameterFamily::Build& build, const Start* start,
-                 const std::function<bool(const IterationRecord&)>& progress, Path& path) {
-  return Walk(request, std::move(session), build, progress, path).run(start);
+                 const ParameterFamily::Build& build, const std::function<bool(const IterationRecord&)>& progress,
+                 Path& path) {
+  return Walk(request, std::move(session), build, progress, path).run();
 }
 
 }  // namespace bowstring

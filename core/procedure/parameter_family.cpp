@@ -20,7 +20,7 @@ Session* ParameterFamily::at(double t, Refusal& refusal) {
   const std::string text = range_.text(t);
   if (text == text_) {
     share_ = t;
-    return session_.get();
+    return &session();
   }
   const Override change{path_, text, t < 0.5 ? from_position_ : to_position_};
   if (!revalue(*session_, change)) {

@@ -18,10 +18,13 @@ class ParameterFamily {
   ParameterFamily(CompositionRequest request, const ContinuationTable& table, Build build,
                   std::unique_ptr<Session> session);
 
+  /// A family of one member, which stays the caller's.
+  explicit ParameterFamily(Session& only) : only_(&only) {}
+
   /// The session at t; null where the composition refuses that value. It stays the same object as long as `built` does
   /// not change.
   Session* at(double t, Refusal& refusal);
-  Session& session() noexcept { return *session_; }
+  Session& session() noexcept { return only_ != nullptr ? *only_ : *session_; }
   double share() const noexcept { return share_; }
   /// How often a session was built.
   int built() const noexcept { return built_; }
@@ -34,6 +37,7 @@ class ParameterFamily {
   ValueRange range_;
   Build build_;
   std::unique_ptr<Session> session_;
+  Session* only_ = nullptr;
   std::string text_;     // of the value that the session has; "" as the composition has it
   double share_ = -1.0;  // of the session
   int built_ = 0;

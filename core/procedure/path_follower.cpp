@@ -289,9 +289,13 @@ Status PathFollower::find_direction(PathState& state, const PathState* before) {
   return {};
 }
 
-Status PathFollower::settle(PathState& state, const PathState* before) {
+Status PathFollower::settle_without_direction(PathState& state) {
   Status status = place(state.share, state.q);
-  if (status.ok()) status = correct(state, {});
+  return status.ok() ? correct(state, {}) : status;
+}
+
+Status PathFollower::settle(PathState& state, const PathState* before) {
+  const Status status = settle_without_direction(state);
   return status.ok() ? find_direction(state, before) : status;
 }
 

@@ -34,6 +34,9 @@ class PathFollower {
   /// with rising share.
   Status settle(PathState& state, const PathState* before = nullptr);
 
+  /// The same without the direction, which a family of one member does not have.
+  Status settle_without_direction(PathState& state);
+
   /// The equilibrium an arclength of `step` on. Fails where Newton's method does not converge in a few iterations, or
   /// where the path turns so much that another branch may have been met: the step has to be shorter then.
   Status advance(const PathState& from, double step, PathState& out);

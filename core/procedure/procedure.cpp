@@ -6,7 +6,7 @@
 #include "core/procedure/continuation.hpp"
 #include "core/procedure/multistart.hpp"
 #include "core/procedure/summary.hpp"
-#include "core/result/document.hpp"
+#include "core/result/carry.hpp"
 
 namespace bowstring {
 namespace {
@@ -30,6 +30,17 @@ void tell_value(Refusal& refusal, const ContinuationTable& table, double share) 
   }
 }
 
+/// A state that could not be built on the one before it, which it shows.
+StateResult unsolved(const StateResult& before, const std::string& name, const std::string& why) {
+  StateResult out = before;
+  out.name = name;
+  out.path = {};
+  out.equilibria.clear();
+  out.solution.certificate.verdict = Verdict::failed;
+  out.solution.certificate.reason = "the state before does not carry over: " + why;
+  return out;
+}
+
 }  // namespace
 
 bool Procedure::check_walk(const Session& session, const CompositionRequest& request, Refusal& refusal) const {
@@ -50,9 +61,11 @@ bool Procedure::check_walk(const Session& session, const CompositionRequest& req
   return !refusal.any();
 }
 
-std::unique_ptr<Procedure> Procedure::prepare(const CompositionRequest& request, Registry& registry, Refusal& refusal) {
+std::unique_ptr<Procedure> Procedure::prepare(const CompositionRequest& request, Registry& registry, Refusal& refusal,
+                                              const CarriedState* carried) {
   std::unique_ptr<Procedure> out(new Procedure(request, registry));
-  out->session_ = bowstring::prepare(request, registry, refusal);
+  if (carried != nullptr) out->carried_ = *carried;
+  out->session_ = bowstring::prepare(request, registry, refusal, carried);
   if (out->session_ == nullptr) return nullptr;
   out->input_files_ = out->session_->composition.input_files;
   const std::size_t steps = out->session_->composition.steps.size();
@@ -60,6 +73,7 @@ std::unique_ptr<Procedure> Procedure::prepare(const CompositionRequest& request,
   for (std::size_t k = 1; k < steps; ++k) {
     CompositionRequest step = request;
     step.step = static_cast<int>(k);
+    step.from_memory = true;
     Refusal refused;
     const std::unique_ptr<Session> session = bowstring::prepare(step, registry, refused);
     if (session != nullptr) {
@@ -79,13 +93,13 @@ std::unique_ptr<Procedure> Procedure::prepare(const CompositionRequest& request,
 }
 
 StateResult Procedure::solve_state(const CompositionRequest& request, std::unique_ptr<Session> session,
-                                   const Start* start,
+                                   const CarriedState* carried,
                                    const std::function<bool(const IterationRecord&)>& progress) const {
   StateResult out;
   const ContinuationTable table = session->composition.continuation;
   const MultistartTable multistart = session->composition.multistart;
   const auto build = [&](const CompositionRequest& walked, Refusal& refusal) {
-    return bowstring::prepare(walked, registry_, refusal);
+    return bowstring::prepare(walked, registry_, refusal, carried);
   };
   bool stopped = false;
   const auto watched = [&](const IterationRecord& record) {
@@ -94,14 +108,14 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
   };
   SolvedState solved;
   if (table.given && !table.fallback) {
-    solved = walk(request, std::move(session), build, start, watched, out.path);
+    solved = walk(request, std::move(session), build, watched, out.path);
   } else {
     solved.session = std::move(session);
-    solved.solution = solve(*solved.session, watched, start);
+    solved.solution = solve(*solved.session, watched);
     const Certificate cold = solved.solution.certificate;
     if (table.given && cold.verdict != Verdict::converged && !stopped) {
       Refusal refusal;
-      SolvedState walked = walk(request, build(request, refusal), build, nullptr, watched, out.path);
+      SolvedState walked = walk(request, build(request, refusal), build, watched, out.path);
       const std::string told =
           "the solve from the start ended '" + std::string(verdict_name(cold.verdict)) + "' (" + cold.reason + "); ";
       if (out.path.reached) {
@@ -122,13 +136,34 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
   return out;
 }
 
-std::vector<StateResult> Procedure::run(const std::function<bool(const IterationRecord&)>& progress,
-                                        const Start* start) {
+std::vector<StateResult> Procedure::run(const std::function<bool(const IterationRecord&)>& progress) {
   std::vector<StateResult> out;
   const std::vector<StepTable> steps = session_->composition.steps;
-  out.push_back(solve_state(request_, std::move(session_), start, progress));
+  out.push_back(solve_state(request_, std::move(session_), carried_ ? &*carried_ : nullptr, progress));
   if (steps.empty()) return out;
   out.back().name = steps.front().name;
+  for (std::size_t k = 1; k < steps.size(); ++k) {
+    const StateResult& before = out.back();
+    if (before.solution.certificate.verdict != Verdict::converged) break;
+    CarriedState carried = carry(before.session, before.solution, before.readings, "the state '" + before.name + "'");
+    carried.position = steps[k].position;
+    carried.becomes_rest = steps[k].rest_is_previous;
+    CompositionRequest request = request_;
+    request.step = static_cast<int>(k);
+    Refusal refusal;
+    std::unique_ptr<Session> session = bowstring::prepare(request, registry_, refusal, &carried);
+    if (session == nullptr) {
+      out.push_back(unsolved(before, steps[k].name, refusal.text()));
+      break;
+    }
+    out.push_back(solve_state(request, std::move(session), &carried, progress));
+    out.back().name = steps[k].name;
+  }
+  if (out.size() < steps.size()) {
+    Certificate& certificate = out.back().solution.certificate;
+    certificate.reason = "step " + std::to_string(out.size()) + " of " + std::to_string(steps.size()) + ", '" +
+                         out.back().name + "': " + certificate.reason;
+  }
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/model/carried_curve.hpp"
 #include "core/model/manifold.hpp"
 
 namespace bowstring {
@@ -155,7 +156,7 @@ Json quantities(const Quantities& q) {
           {"line_load_integral_N", optional(q.line_load_integral)}};
 }
 
-Json reference_tangents(const Curve& curve) {
+Json state1_tangents(const Curve& curve) {
   Json out = Json::array();
   for (const std::vector<double>& tangent : curve.state1_tangent) {
     out.push_back(vector(tangent.data(), curve.view.dimension));
@@ -163,14 +164,39 @@ Json reference_tangents(const Curve& curve) {
   return out;
 }
 
-Json curve(const Curve& curve, const CurveRecord& record) {
+/// Of the rest state; of an end that holds no rotation State 1's.
+Json reference_tangents(const Curve& curve) {
+  Json out = state1_tangents(curve);
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (curve.state1.empty() || curve.held_frame[e].empty()) continue;
+    out[e] = vector(curve.view.end[e].tangent, curve.view.dimension);
+  }
+  return out;
+}
+
+Json held_frames(const Curve& curve) {
+  Json out = Json::array();
+  for (const std::vector<double>& frame : curve.held_frame)
+    out.push_back(frame.empty() ? Json(nullptr) : numbers(frame));
+  return out;
+}
+
+Json curve(const Scene& scene, const Curve& curve, const CurveRecord& record) {
   const int d = curve.view.dimension;
+  const bool other_rest = !curve.state1.empty();
+  const bool along = curve.along >= 0;
   return {{"name", curve.name},
           {"kind", curve.view.kind == CurveKind::wire ? "wire" : "vessel"},
           {"s_mm", numbers(record.arc)},
           {"points", rows(record.points, d)},
           {"reference_points", rows(curve.reference, d)},
           {"reference_tangents", reference_tangents(curve)},
+          {"state_1_points", other_rest ? rows(curve.state1, d) : Json(nullptr)},
+          {"state_1_tangents", other_rest ? state1_tangents(curve) : Json(nullptr)},
+          {"material_share", numbers(material_shares(curve))},
+          {"along", along ? Json(scene.curves[at(curve.along)]->name) : Json(nullptr)},
+          {"span_mm", along ? Json::array({curve.along_begin, curve.along_end}) : Json(nullptr)},
+          {"held_frames", held_frames(curve)},
           {"frames", rows(record.frames, 4)},
           {"radius_mm", curve.radius.empty() ? Json(nullptr) : numbers(curve.radius)},
           {"curvature_per_mm", numbers(record.curvature)},
@@ -280,7 +306,8 @@ Json continuation(const Path& path) {
 
 Json curves(const Scene& scene, const Readings& readings) {
   Json out = Json::array();
-  for (const CurveRecord& record : readings.curves) out.push_back(curve(*scene.curves[at(record.curve)], record));
+  for (const CurveRecord& record : readings.curves)
+    out.push_back(curve(scene, *scene.curves[at(record.curve)], record));
   return out;
 }
 

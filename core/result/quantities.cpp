@@ -267,8 +267,9 @@ void read_displacements(const Scene& scene, const Readings& readings, Quantities
       if (i > 0) weighted += 0.5 * (displacement + previous) * curve->view.edge_length[i - 1];
       previous = displacement;
     }
-    length += curve->arc.back();
-    change += record.arc.back() - curve->arc.back();
+    const double at_rest = curve->state1.empty() ? curve->arc.back() : polyline_arc(curve->reference, d).back();
+    length += at_rest;
+    change += record.arc.back() - at_rest;
   }
   if (nodes == 0) return;
   out.peak_displacement = peak;

@@ -99,6 +99,26 @@ bool any_unheld_load(const Scene& scene) {
                      [&](const auto& curve) { return unheld_load(scene, *curve).has_value(); });
 }
 
+/// The energy anew, with the parameters of its laws as they were; false where it declares something else than before.
+bool remake(const Scene& scene, const EnergyUse& use, const ComponentChoice& choice, EnergyUse& made) {
+  made.label = use.label;
+  made.plugin = use.plugin;
+  made.curve = use.curve;
+  made.parameters = choice.parameters;
+  Status status;
+  made.energy = create<Energy>(choice, status);
+  if (!status.ok()) return false;
+  const CurveView& curve = scene.curves[static_cast<std::size_t>(use.curve)]->view;
+  if (!made.energy->declare(curve, made.declaration).ok() || !flaw_of(made.declaration, made.parameters).empty() ||
+      !same(made.declaration, use.declaration)) {
+    return false;
+  }
+  for (std::size_t k = 0; k < use.laws.size(); ++k) {
+    made.laws.push_back({made.declaration.laws[k], made.declaration.descriptions[k], use.laws[k].parameters});
+  }
+  return true;
+}
+
 bool revalue_energy(Session& session, std::size_t index, const std::string& key, const Override& change) {
   Scene& scene = *session.scene;
   EnergyTable& table = session.composition.energies[index];
@@ -107,25 +127,12 @@ bool revalue_energy(Session& session, std::size_t index, const std::string& key,
   if (!choice) return false;
 
   EnergyUse made;
-  made.label = use.label;
-  made.plugin = use.plugin;
-  made.curve = use.curve;
-  made.parameters = choice->parameters;
-  Status status;
-  made.energy = create<Energy>(*choice, status);
-  if (!status.ok()) return false;
-  const CurveView& curve = scene.curves[static_cast<std::size_t>(use.curve)]->view;
-  if (!made.energy->declare(curve, made.declaration).ok() || !flaw_of(made.declaration, made.parameters).empty() ||
-      !same(made.declaration, use.declaration)) {
-    return false;
-  }
+  if (!remake(scene, use, *choice, made)) return false;
   const double number = number_of(made.parameters.at(key));
-  for (std::size_t k = 0; k < use.laws.size(); ++k) {
-    LawUse law{made.declaration.laws[k], made.declaration.descriptions[k], use.laws[k].parameters};
+  for (LawUse& law : made.laws) {
     for (std::size_t p = 0; p < law.parameters.size(); ++p) {
       if (law.description.parameters[p] == key) std::fill(law.parameters[p].begin(), law.parameters[p].end(), number);
     }
-    made.laws.push_back(std::move(law));
   }
   std::swap(use, made);
   if (any_unheld_load(scene)) {
@@ -156,6 +163,34 @@ bool revalue_constraint(Session& session, std::size_t index, const std::string& 
 }
 
 }  // namespace
+
+bool show_previous(Session& session, const std::vector<std::vector<double>>& previous) {
+  Scene& scene = *session.scene;
+  const auto same_as = [](const std::unique_ptr<Curve>& curve, const std::vector<double>& points) {
+    return curve->previous == points;
+  };
+  if (previous.empty() ||
+      std::equal(scene.curves.begin(), scene.curves.end(), previous.begin(), previous.end(), same_as))
+    return true;
+  for (std::size_t c = 0; c < scene.curves.size(); ++c) {
+    Curve& curve = *scene.curves[c];
+    curve.previous = previous[c];
+    curve.view.previous = curve.previous.empty() ? nullptr : curve.previous.data();
+  }
+  for (ConstraintUse& use : scene.constraints) {
+    for (CurveView& view : use.scene.on) {
+      view.previous = scene.curves[static_cast<std::size_t>(view.index)]->view.previous;
+    }
+  }
+  session.bound = false;
+  std::vector<EnergyUse> made(scene.energies.size());
+  for (std::size_t e = 0; e < made.size(); ++e) {
+    if (!remake(scene, scene.energies[e], session.composition.energies[e].component, made[e])) return false;
+  }
+  // The assembly still reads the old ones' laws; it is made anew before it is asked again.
+  scene.energies.swap(made);
+  return true;
+}
 
 bool revalue(Session& session, const Override& change) {
   const std::vector<std::string> steps = steps_of(change.path);

@@ -9,4 +9,9 @@ namespace bowstring {
 /// where the override is wrong, answers false and leaves the session as it was: the composition has to be read again.
 bool revalue(Session& session, const Override& change);
 
+/// Lets terms see another step before: CurveView::previous of each curve, empty for none. Laws are made anew; false
+/// where they would read other places, and then the scene has to be built anew with that state. `previous` of no curves
+/// changes nothing.
+bool show_previous(Session& session, const std::vector<std::vector<double>>& previous);
+
 }  // namespace bowstring

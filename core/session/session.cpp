@@ -7,6 +7,7 @@
 
 #include "core/certificate/multipliers.hpp"
 #include "core/model/declarations.hpp"
+#include "core/session/revalue.hpp"
 
 namespace bowstring {
 
@@ -66,9 +67,12 @@ void check_pair(const Session& session, Refusal& refusal) {
 
 }  // namespace
 
-std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& registry, Refusal& refusal) {
+std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& registry, Refusal& refusal,
+                                 const CarriedState* carried) {
   const auto begin = Clock::now();
-  CompositionOutcome loaded = load_composition(request, registry);
+  CompositionRequest own = request;
+  own.from_memory = request.from_memory || carried != nullptr;
+  CompositionOutcome loaded = load_composition(own, registry);
   refusal.errors = std::move(loaded.errors);
   refusal.plugin_failure = std::move(loaded.plugin_failure);
   if (refusal.any() || !loaded.composition) return nullptr;
@@ -85,37 +89,41 @@ std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& re
   if (refusal.any()) return nullptr;
 
   const auto setup = Clock::now();
-  SceneOutcome built = build_scene(composition, session->solver->traits());
+  const StartTable& table = composition.start;
+  const CarriedState of_file{table.state, table.name, table.position, table.from, std::nullopt};
+  if (carried == nullptr && table.state != nullptr) carried = &of_file;
+  SceneOutcome built = build_scene(composition, session->solver->traits(), carried);
   refusal.errors = std::move(built.errors);
   refusal.plugin_failure = std::move(built.plugin_failure);
   if (refusal.any()) return nullptr;
   session->scene = std::move(built.scene);
-  const StartTable& table = composition.start;
   Start& start = session->start;
-  if (table.state != nullptr) {
+  if (carried != nullptr) {
     std::vector<DocumentFlaw> flaws;
-    start.q = recorded_coordinates(*session->scene, *table.state, table.name, flaws, start.warnings);
+    start.q = carried_coordinates(*session->scene, *carried, built.carried, flaws, start.warnings);
     for (DocumentFlaw& flaw : flaws) {
-      refusal.errors.push_back({table.position, std::move(flaw.found), std::move(flaw.expected), std::move(flaw.mend)});
+      refusal.errors.push_back(
+          {carried->position, std::move(flaw.found), std::move(flaw.expected), std::move(flaw.mend)});
     }
     if (refusal.any()) return nullptr;
   }
+  for (const auto& curve : session->scene->curves) start.previous.push_back(curve->previous);
   try {
     session->assembly = std::make_unique<Assembly>(*session->scene, start.q);
   } catch (const std::exception& error) {
     if (start.q.empty()) {
       refusal.plugin_failure = Status::failure(Code::failed, error.what());
     } else {
-      refusal.errors.push_back({table.position,
-                                "this scene cannot begin at the state of " + table.name + ": " + error.what(),
+      refusal.errors.push_back({carried->position,
+                                "this scene cannot begin at the state of " + carried->name + ": " + error.what(),
                                 "a state of this scene", "remove [start]"});
     }
     return nullptr;
   }
-  if (table.state != nullptr) {
-    start.origin = {table.from, table.state->sha256};
+  if (carried != nullptr) {
+    start.origin = {carried->file, carried->state->sha256};
     start.multipliers =
-        recorded_multipliers(session->assembly->row_origins(), *table.state, table.name, start.warnings);
+        carried_multipliers(*session->scene, session->assembly->row_origins(), *carried, built.carried, start.warnings);
   }
   check_pair(*session, refusal);
   session->seconds.setup = since(setup);
@@ -252,7 +260,12 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
   const std::vector<double>& first = from.q.empty() ? own : from.q;
   Solution solution;
   try {
-    if (start != nullptr || !session.bound) bind_anew(session, from.q);
+    if (start != nullptr || !session.bound) {
+      if (!show_previous(session, from.previous)) {
+        throw std::runtime_error("a term declares other laws after another step before: prepare the scene anew");
+      }
+      bind_anew(session, from.q);
+    }
     session.bound = false;
     solution = solve_from(session, first, from.multipliers, watched);
     const Certificate& found = solution.certificate;

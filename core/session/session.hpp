@@ -46,7 +46,12 @@ struct Solution {
 };
 
 /// Loads, checks, builds. On refusal the session is null.
-std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& registry, Refusal& refusal);
+///
+/// `carried`: a state in memory (core/result/carry.hpp) that the session starts from instead of the document that
+/// [start] names; it gives the bits that its document gives. A chain of states is one session after another, each with
+/// what was carried out of the one before: prepare(request, registry, refusal, &carried), solve, read_solution, carry.
+std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& registry, Refusal& refusal,
+                                 const CarriedState* carried = nullptr);
 
 /// Solves and certifies. `progress` is called after each iteration; false stops with the best point. A failure of a
 /// plugin during the solution is a verdict of the solution, not an error.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/model/carried_curve.hpp"
 #include "core/model/manifold.hpp"
 
 namespace bowstring {
@@ -28,50 +29,35 @@ std::string number(double value) {
 
 std::string field_name(const Curve& curve, const FieldDeclaration& field) { return curve.name + "." + field.name; }
 
-std::string field_names(const Scene& scene) {
-  std::string text;
-  for (const auto& curve : scene.curves) {
-    for (const FieldDeclaration& field : curve->declaration.fields) {
-      text += (text.empty() ? "" : ", ") + field_name(*curve, field);
-    }
-  }
-  return text.empty() ? "none" : text;
+/// Whether the numbers are of such a field.
+bool fits(const FieldDeclaration& field, const NamedNumbers* numbers) {
+  return numbers != nullptr && (numbers->manifold.empty() || numbers->manifold == manifold_name(field.manifold)) &&
+         numbers->values.size() == at(field.count * coordinate_count(field.manifold, field.dimension));
 }
 
-/// Whether the numbers fit the field; appends them to q.
-bool take_field(const FieldDeclaration& field, const NamedNumbers& numbers, const std::string& owner,
-                std::vector<DocumentFlaw>& flaws, std::vector<double>& q) {
+/// Copies numbers that fit the field; tells what is wrong with them all the same.
+void take_field(const FieldDeclaration& field, const NamedNumbers& numbers, const std::string& owner,
+                std::vector<DocumentFlaw>& flaws, double* q) {
   const int each = coordinate_count(field.manifold, field.dimension);
-  const std::string own = manifold_name(field.manifold);
-  const auto flaw = [&](const std::string& found, const std::string& expected) {
-    flaws.push_back({owner + found, expected, "the same kinematics and nodes are needed"});
-    return false;
-  };
-  if (!numbers.manifold.empty() && numbers.manifold != own) {
-    return flaw(" lies in " + numbers.manifold, "one in " + own + ", as in this scene");
-  }
-  if (numbers.values.size() != at(field.count * each)) {
-    return flaw(" has " + std::to_string(numbers.values.size()) + " numbers",
-                std::to_string(field.count * each) + ", as in this scene");
-  }
   const auto not_finite =
       std::find_if(numbers.values.begin(), numbers.values.end(), [](double value) { return !std::isfinite(value); });
   if (not_finite != numbers.values.end()) {
     flaws.push_back(
         {owner + " has a number that is not finite, as number " + std::to_string(not_finite - numbers.values.begin()),
          "finite numbers", "start from a result whose state is known"});
-    return false;
+    return;
   }
   for (int i = 0; is_curved(field.manifold) && i < field.count; ++i) {
     double squared = 0.0;
     for (int k = 0; k < each; ++k) squared += numbers.values[at(i * each + k)] * numbers.values[at(i * each + k)];
     if (std::fabs(std::sqrt(squared) - 1.0) > unit_length) {
-      return flaw(" has a quaternion of length " + number(std::sqrt(squared)) + " as entry " + std::to_string(i),
-                  "unit quaternions");
+      flaws.push_back(
+          {owner + " has a quaternion of length " + number(std::sqrt(squared)) + " as entry " + std::to_string(i),
+           "unit quaternions", "start from a result whose state is known"});
+      return;
     }
   }
-  q.insert(q.end(), numbers.values.begin(), numbers.values.end());
-  return true;
+  std::copy(numbers.values.begin(), numbers.values.end(), q);
 }
 
 /// Puts what the field holds where the scene's own start has it; answers by how much anything had to move.
@@ -125,38 +111,132 @@ const char* manifold_name(Manifold manifold) noexcept {
   return "SO3";
 }
 
-std::vector<double> recorded_coordinates(const Scene& scene, const RecordedState& state, const std::string& name,
-                                         std::vector<DocumentFlaw>& flaws, std::vector<std::string>& warnings) {
-  const std::size_t flaws_before = flaws.size();
-  std::vector<double> q;
-  std::vector<std::string> known, moved;
-  for (const auto& curve : scene.curves) {
-    for (const FieldDeclaration& field : curve->declaration.fields) {
-      const std::string label = field_name(*curve, field);
-      known.push_back(label);
-      const NamedNumbers* numbers = find(state.fields, label);
-      if (numbers == nullptr) {
-        flaws.push_back({name + " has no field '" + label + "'", "the fields of this scene: " + field_names(scene),
-                         "start from a result of the same curves and kinematics"});
-        continue;
+namespace {
+
+/// Takes one curve of a carried state.
+class CurveTaking {
+ public:
+  CurveTaking(const Curve& curve, const CarriedCurve& shape, const CarriedState& carried)
+      : curve_(curve), shape_(shape), carried_(carried) {}
+
+  std::vector<DocumentFlaw> flaws;
+  std::string interpolated;        ///< what is told of it; "": nothing was
+  std::vector<std::string> moved;  ///< fields that ends hold elsewhere, with by how much
+
+  void run(double* q) {
+    if (!curve_.state1.empty()) return;  // the vessel is at its rest state
+    const bool whole = shape_.recorded && shape_.same_mesh && all_fields_fit();
+    if (!whole && !adopt(q)) return;
+    for (const FieldDeclaration& field : curve_.declaration.fields) {
+      const NamedNumbers* numbers = recorded(field);
+      const bool as_it_stands = whole || (shape_.same_mesh && fits(field, numbers));
+      if (as_it_stands) {
+        take_field(field, *numbers, "field '" + numbers->name + "' of " + carried_.name, flaws, q);
+        if (!flaws.empty()) return;
       }
-      const std::size_t first = q.size();
-      if (!take_field(field, *numbers, "field '" + label + "' of " + name, flaws, q)) continue;
-      const double by = hold(field, q.data() + first);
-      if (by > same_coordinate) moved.push_back("'" + label + "' by up to " + number(by));
+      const bool ends = !whole && field.name != "position";  // what is interpolated ends near what is held
+      const double by = hold(field, q);
+      if (by > same_coordinate && shape_.recorded && !ends) {
+        moved.push_back("'" + field_name(curve_, field) + "' by up to " + number(by));
+      }
+      q += field.count * coordinate_count(field.manifold, field.dimension);
     }
   }
-  for (const NamedNumbers& numbers : state.fields) {
-    if (std::find(known.begin(), known.end(), numbers.name) != known.end()) continue;
-    flaws.push_back({name + " has a field '" + numbers.name + "', which this scene does not have",
-                     "the fields of this scene: " + field_names(scene),
-                     "start from a result of the same curves and kinematics"});
+
+ private:
+  const NamedNumbers* recorded(const FieldDeclaration& field) const {
+    return find(carried_.state->fields, field_name(curve_, field));
+  }
+
+  bool all_fields_fit() const {
+    const auto& fields = curve_.declaration.fields;
+    if (!std::all_of(fields.begin(), fields.end(), [&](const auto& field) { return fits(field, recorded(field)); })) {
+      return false;
+    }
+    const std::string prefix = curve_.name + ".";
+    const auto own =
+        std::count_if(carried_.state->fields.begin(), carried_.state->fields.end(),
+                      [&](const NamedNumbers& numbers) { return numbers.name.compare(0, prefix.size(), prefix) == 0; });
+    return own == static_cast<std::ptrdiff_t>(fields.size());
+  }
+
+  /// Writes the coordinates of the curve's shape; false where there are none, or where the scene's own start stays.
+  bool adopt(double* q) {
+    if (!shape_.recorded && shape_.orientation.empty()) return false;  // a wire that starts where it would without
+    if (shape_.orientation.empty()) {
+      flaws.push_back({"the numbers of '" + curve_.name + "' in " + carried_.name +
+                           " do not fit, and it has the curve with " + shape_.flaw +
+                           ", so that nothing can be "
+                           "interpolated",
+                       "a shape, or the fields " + field_names(), "start from a result that this version wrote"});
+      return false;
+    }
+    std::vector<double> own(at(curve_.coordinates));
+    const Status status = curve_.kinematics->adopt({shape_.points, shape_.orientation}, own);
+    const bool finite = std::all_of(own.begin(), own.end(), [](double x) { return std::isfinite(x); });
+    if (!status.ok() || !finite) {
+      flaws.push_back({"kinematics '" + curve_.kinematics_name + "' of '" + curve_.name +
+                           "' cannot take its shape in " + carried_.name + ": " +
+                           (status.ok() ? "it gives numbers that are not finite" : status.text),
+                       "a state that it can begin at", "start from a result of the same kinematics and nodes"});
+      return false;
+    }
+    std::copy(own.begin(), own.end(), q);
+    if (shape_.recorded) tell();
+    return true;
+  }
+
+  void tell() {
+    const RecordedCurve* before = carried_.state->find(curve_.name);
+    interpolated = "'" + curve_.name + "'";
+    std::string how = shape_.told;
+    const auto add = [&](const std::string& text) { how += (how.empty() ? "" : ", ") + text; };
+    if (before != nullptr && !before->kinematics.empty() && before->kinematics != curve_.kinematics_name) {
+      add("from kinematics '" + before->kinematics + "' to '" + curve_.kinematics_name + "'");
+    }
+    if (how.empty()) add("to the fields " + field_names());
+    interpolated += " " + how;
+  }
+
+  std::string field_names() const {
+    std::string text;
+    for (const FieldDeclaration& field : curve_.declaration.fields) {
+      text += (text.empty() ? "" : ", ") + field.name + " in " + manifold_name(field.manifold);
+    }
+    return text.empty() ? "(none)" : text;
+  }
+
+  const Curve& curve_;
+  const CarriedCurve& shape_;
+  const CarriedState& carried_;
+};
+
+std::string joined(const std::vector<std::string>& texts, const char* between) {
+  std::string out;
+  for (const std::string& text : texts) out += (out.empty() ? "" : between) + text;
+  return out;
+}
+
+}  // namespace
+
+std::vector<double> carried_coordinates(const Scene& scene, const CarriedState& carried, const CarriedCurves& shapes,
+                                        std::vector<DocumentFlaw>& flaws, std::vector<std::string>& warnings) {
+  const std::size_t flaws_before = flaws.size();
+  std::vector<double> q = scene.start_coordinates();
+  std::vector<std::string> interpolated, moved;
+  for (const auto& curve : scene.curves) {
+    CurveTaking taking(*curve, shapes.curves[at(curve->view.index)], carried);
+    taking.run(q.data() + curve->coordinate_begin);
+    flaws.insert(flaws.end(), taking.flaws.begin(), taking.flaws.end());
+    if (!taking.interpolated.empty()) interpolated.push_back(taking.interpolated);
+    moved.insert(moved.end(), taking.moved.begin(), taking.moved.end());
   }
   if (flaws.size() > flaws_before) return {};
+  warnings.insert(warnings.end(), shapes.warnings.begin(), shapes.warnings.end());
+  if (!interpolated.empty()) warnings.push_back(carried.name + " is interpolated: " + joined(interpolated, "; "));
   if (!moved.empty()) {
-    std::string text = name + " differs in what ends hold, which stays as this composition has it: ";
-    for (std::size_t i = 0; i < moved.size(); ++i) text += (i > 0 ? ", " : "") + moved[i];
-    warnings.push_back(text);
+    warnings.push_back(carried.name +
+                       " differs in what ends hold, which stays as this composition has it: " + joined(moved, ", "));
   }
   return q;
 }
@@ -171,13 +251,32 @@ void hold_ends(const Scene& scene, std::vector<double>& q) {
   }
 }
 
-std::vector<double> recorded_multipliers(const std::vector<RowOrigin>& rows, const RecordedState& state,
-                                         const std::string& name, std::vector<std::string>& warnings) {
+std::vector<double> carried_multipliers(const Scene& scene, const std::vector<RowOrigin>& rows,
+                                        const CarriedState& carried, const CarriedCurves& shapes,
+                                        std::vector<std::string>& warnings) {
+  const std::string& name = carried.name;
+  const RecordedState& state = *carried.state;
+  // The curve that rows stand on: of a constraint the first one that it names.
+  const auto on_other_mesh = [&](const RowOrigin& group) {
+    int curve = group.curve;
+    if (group.constraint >= 0) {
+      const ConstraintUse& use = scene.constraints[at(group.constraint)];
+      curve = use.scene.on.empty() ? -1 : use.scene.on.front().index;
+    }
+    return curve >= 0 && !shapes.curves[at(curve)].same_mesh;
+  };
   std::vector<double> out;
+  std::vector<std::string> other_mesh;
   for (const RowOrigin& group : rows) {
     const NamedNumbers* numbers = find(state.multipliers, group.name);
-    if (numbers != nullptr && numbers->values.size() == at(group.count)) {
+    const bool other = on_other_mesh(group);
+    if (!other && numbers != nullptr && numbers->values.size() == at(group.count)) {
       out.insert(out.end(), numbers->values.begin(), numbers->values.end());
+      continue;
+    }
+    out.resize(out.size() + at(group.count), 0.0);
+    if (other) {
+      other_mesh.push_back("'" + group.name + "'");
       continue;
     }
     warnings.push_back(
@@ -185,7 +284,10 @@ std::vector<double> recorded_multipliers(const std::vector<RowOrigin>& rows, con
         (numbers == nullptr ? "no multipliers" : std::to_string(numbers->values.size()) + " multipliers") + " of '" +
         group.name + "', which has " + std::to_string(group.count) +
         " rows here: its state is taken, and these multipliers start at 0");
-    out.resize(out.size() + at(group.count), 0.0);
+  }
+  if (!other_mesh.empty()) {
+    warnings.push_back("multipliers of rows on curves of another mesh than in " + name +
+                       " start at 0: " + joined(other_mesh, ", "));
   }
   for (const NamedNumbers& numbers : state.multipliers) {
     const bool known =
@@ -193,6 +295,25 @@ std::vector<double> recorded_multipliers(const std::vector<RowOrigin>& rows, con
     if (!known) warnings.push_back(name + " has multipliers of '" + numbers.name + "', which has no rows here");
   }
   return out;
+}
+
+Start start_from(const Scene& scene, const std::vector<RowOrigin>& rows, const CarriedState& carried,
+                 std::vector<DocumentFlaw>& flaws) {
+  Start start;
+  std::vector<NamedKind> curves;
+  for (const auto& curve : scene.curves) curves.emplace_back(curve->name, curve->view.kind);
+  compare_scenes(scene.dimension, curves, carried, flaws);
+  if (!flaws.empty()) return start;
+  const CarriedCurves shapes = carried_curves(scene, carried, flaws);
+  if (!flaws.empty()) return start;
+  start.q = carried_coordinates(scene, carried, shapes, flaws, start.warnings);
+  if (!flaws.empty()) return start;
+  start.multipliers = carried_multipliers(scene, rows, carried, shapes, start.warnings);
+  start.origin = {carried.file, carried.state->sha256};
+  for (const CarriedCurve& curve : shapes.curves) {
+    start.previous.push_back(curve.recorded ? curve.points : std::vector<double>{});
+  }
+  return start;
 }
 
 RecordedState record_state(const Scene& scene, const std::vector<RowOrigin>& rows, const std::vector<double>& q,

@@ -24,19 +24,28 @@ class PreparedSimulation::Inside {
     session.reset();
   }
 
-  /// Brings the session up to date; false with the refusal.
-  bool update(Refusal& refusal) {
+  /// Gives the session the values that were set since, or none where it has to be built anew.
+  void revalue_session() {
     for (const std::string& path : changed) {
       if (session != nullptr && !revalue(*session, current(path))) session.reset();
     }
     changed.clear();
-    if (session != nullptr) return true;
+  }
+
+  bool build(const CarriedState* carried, Refusal& refusal) {
     ++builds;
-    session = prepare(request, plugins, refusal);
+    built_with_state = carried != nullptr;
+    session = prepare(request, plugins, refusal, carried);
     if (session != nullptr) refuse_procedures(session->composition, refusal);
     if (refusal.any()) session.reset();
     if (session != nullptr) provenance = provenance_json(*session, plugins);
     return session != nullptr;
+  }
+
+  /// Brings the session up to date; false with the refusal. `own_start`: its start has to be the composition's.
+  bool update(bool own_start, Refusal& refusal) {
+    revalue_session();
+    return (session != nullptr && !(own_start && built_with_state)) || build(nullptr, refusal);
   }
 
   SimulationResult solved(const Progress& progress, const Start* start) {
@@ -46,30 +55,36 @@ class PreparedSimulation::Inside {
   }
 
   SimulationResult solve(const Progress& progress) {
+    if (!last) return solve_afresh(progress);
     Refusal refusal;
-    if (!update(refusal)) return solving::refused(std::move(refusal));
-    if (!last) return solved(progress, nullptr);
-    Start start;
-    if (solving::start_from(*session, *last, start, refusal)) return solved(progress, &start);
+    SimulationResult result = solve_from(*last, progress);
+    if (result.ok()) return result;
+    // What is wrong with the composition is wrong without a start as well.
+    if (!update(true, refusal)) return solving::refused(std::move(refusal));
     Start own = session->start;
     own.warnings.push_back(
         "the result before does not fit this scene any more, which starts where its composition does: " +
-        refusal.text());
+        result.refusal().text());
     return solved(progress, &own);
   }
 
   SimulationResult solve_from(const SimulationResult& from, const Progress& progress) {
     Refusal refusal;
+    CarriedState carried;
+    if (!solving::state_of(from, carried, refusal)) return solving::refused(std::move(refusal));
+    revalue_session();
     Start start;
-    if (!update(refusal) || !solving::start_from(*session, from, start, refusal)) {
-      return solving::refused(std::move(refusal));
+    if (session != nullptr && !session->composition.start.rest_is_previous) {
+      if (!solving::start_from(*session, carried, start, refusal)) return solving::refused(std::move(refusal));
+      if (show_previous(*session, start.previous)) return solved(progress, &start);
     }
-    return solved(progress, &start);
+    if (!build(&carried, refusal)) return solving::refused(std::move(refusal));
+    return solved(progress, nullptr);
   }
 
   SimulationResult solve_afresh(const Progress& progress) {
     Refusal refusal;
-    if (!update(refusal)) return solving::refused(std::move(refusal));
+    if (!update(true, refusal)) return solving::refused(std::move(refusal));
     return solved(progress, nullptr);
   }
 
@@ -79,6 +94,7 @@ class PreparedSimulation::Inside {
   std::string provenance;
   std::vector<std::string> changed;  // paths since the session was brought up to date
   std::optional<SimulationResult> last;
+  bool built_with_state = false;  // the session's own start is not the composition's
   int builds = 0;
 
  private:
@@ -130,7 +146,7 @@ void PreparedSimulation::unset(const std::string& path) { inside_->take_back(pat
 Refusal PreparedSimulation::check() {
   Refusal refusal;
   try {
-    inside_->update(refusal);
+    inside_->update(false, refusal);
   } catch (...) {
     refusal = solving::broken_down();
   }

@@ -58,16 +58,17 @@ SimulationResult Simulation::solve_request(Registry& plugins, const Progress& pr
                                            const SimulationResult* from) const {
   try {
     Refusal refusal;
-    const std::unique_ptr<Procedure> procedure = Procedure::prepare(request_, plugins, refusal);
-    if (procedure == nullptr) return solving::refused(std::move(refusal));
-    Start start;
+    CarriedState carried;
+    if (from != nullptr && !solving::state_of(*from, carried, refusal)) return solving::refused(std::move(refusal));
     if (from != nullptr) {
-      if (!solving::start_from(procedure->session(), *from, start, refusal)) {
-        return solving::refused(std::move(refusal));
-      }
-      start.origin.sha256 = sha256_hex(from->json());
+      RecordedState state = *carried.state;
+      state.sha256 = sha256_hex(from->json());
+      carried.state = std::make_shared<const RecordedState>(std::move(state));
     }
-    return solving::solve_procedure(*procedure, progress, from != nullptr ? &start : nullptr);
+    const std::unique_ptr<Procedure> procedure =
+        Procedure::prepare(request_, plugins, refusal, from != nullptr ? &carried : nullptr);
+    if (procedure == nullptr) return solving::refused(std::move(refusal));
+    return solving::solve_procedure(*procedure, progress);
   } catch (...) {
     return solving::refused(solving::broken_down());
   }

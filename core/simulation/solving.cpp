@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/result/carry.hpp"
 #include "core/simulation/simulation_data.hpp"
 
 namespace bowstring::solving {
@@ -80,25 +81,25 @@ void put(std::vector<Override>& overrides, const std::string& path, const std::s
   overrides.push_back({path, value});
 }
 
-bool start_from(const Session& session, const SimulationResult& from, Start& start, Refusal& refusal) {
+bool state_of(const SimulationResult& from, CarriedState& carried, Refusal& refusal) {
   const SimulationData& data = from.data();
   if (!from.ok()) {
     refusal.errors.push_back({"from", "the result to start from is a refusal (" + data.refusal.text() + ")",
                               "a result that was solved", ""});
     return false;
   }
-  const StateResult& last = data.state();
-  const RecordedState state =
-      record_state(*last.session.scene, last.session.rows, last.solution.q, last.solution.multipliers);
-  std::vector<DocumentFlaw> flaws;
-  const std::string name = "the result";
-  start.q = recorded_coordinates(*session.scene, state, name, flaws, start.warnings);
-  for (DocumentFlaw& flaw : flaws) {
-    refusal.errors.push_back({"from", std::move(flaw.found), std::move(flaw.expected), std::move(flaw.mend)});
-  }
-  if (refusal.any()) return false;
-  start.multipliers = recorded_multipliers(session.assembly->row_origins(), state, name, start.warnings);
+  carried = carry(data.state().session, data.state().solution, data.state().readings, "the result");
+  carried.position = "from";
   return true;
+}
+
+bool start_from(const Session& session, const CarriedState& carried, Start& start, Refusal& refusal) {
+  std::vector<DocumentFlaw> flaws;
+  start = bowstring::start_from(*session.scene, session.assembly->row_origins(), carried, flaws);
+  for (DocumentFlaw& flaw : flaws) {
+    refusal.errors.push_back({carried.position, std::move(flaw.found), std::move(flaw.expected), std::move(flaw.mend)});
+  }
+  return !refusal.any();
 }
 
 namespace {
@@ -130,9 +131,9 @@ SimulationResult solve_session(Session& session, std::string provenance, const P
   return made_of(std::move(states), session.composition.input_files, guarded.problem());
 }
 
-SimulationResult solve_procedure(Procedure& procedure, const Progress& progress, const Start* start) {
+SimulationResult solve_procedure(Procedure& procedure, const Progress& progress) {
   GuardedProgress guarded(progress);
-  std::vector<StateResult> states = procedure.run(std::ref(guarded), start);
+  std::vector<StateResult> states = procedure.run(std::ref(guarded));
   return made_of(std::move(states), procedure.input_files(), guarded.problem());
 }
 

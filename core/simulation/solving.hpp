@@ -23,14 +23,17 @@ std::string quantity_text(double value, const std::string& unit);
 void put(std::vector<Override>& overrides, const std::string& path, const std::string& value);
 void take_back(std::vector<Override>& overrides, const std::string& path);
 
-/// Makes a start of another result's state. False where it does not fit, with the reasons in the refusal.
-bool start_from(const Session& session, const SimulationResult& from, Start& start, Refusal& refusal);
+/// Another result's state. False where it has none, with the reason in the refusal.
+bool state_of(const SimulationResult& from, CarriedState& carried, Refusal& refusal);
+
+/// Makes a start of a state. False where it does not fit, with the reasons in the refusal.
+bool start_from(const Session& session, const CarriedState& carried, Start& start, Refusal& refusal);
 
 /// `provenance`: of the document. `start` as in `solve` of a session.
 SimulationResult solve_session(Session& session, std::string provenance, const Progress& progress,
                                const Start* start = nullptr);
 
-/// The whole of what a composition asks for. `start`: of its first state.
-SimulationResult solve_procedure(Procedure& procedure, const Progress& progress, const Start* start = nullptr);
+/// The whole of what a composition asks for.
+SimulationResult solve_procedure(Procedure& procedure, const Progress& progress);
 
 }  // namespace bowstring::solving

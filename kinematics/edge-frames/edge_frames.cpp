@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "core/curve_kinematics/adopt.hpp"
 #include "core/curve_kinematics/orientation.hpp"
 #include "core/curve_kinematics/sample.hpp"
 #include "core/curve_kinematics/sites.hpp"
@@ -58,10 +59,17 @@ void EdgeFrames::declare_fields(const Needs& needs, KinematicsDeclaration& out) 
       transported_orientations(manifold_, edge_tangents(mesh_, mesh_.curve.reference), nullptr);
   first_frame_.assign(reference.begin(), reference.begin() + coordinate_count(manifold_, 1));
   position_ = add_field(position_field(mesh_), out);
-  orientation_ = add_field(orientation_field(needs, reference), out);
+  FieldDeclaration orientation = orientation_field(needs, reference);
+  first_angle_ = orientation.start.front();
+  orientation_ = add_field(std::move(orientation), out);
   if (mesh_.stretching()) edge_length_ = add_field(edge_length_field(), out);
   if (mesh_.sliding()) length_ = add_field(length_field(mesh_), out);
-  if (mesh_.held_tangents > 0) held_tangent_ = add_field(held_tangent_field(mesh_, manifold_, reference), out);
+  held_start_.clear();
+  if (mesh_.held_tangents > 0) {
+    FieldDeclaration held = held_tangent_field(mesh_, manifold_, reference);
+    held_start_ = held.start;
+    held_tangent_ = add_field(std::move(held), out);
+  }
 }
 
 FieldDeclaration EdgeFrames::orientation_field(const Needs& needs, const std::vector<double>& reference) const {
@@ -349,6 +357,27 @@ Status EdgeFrames::sample(Span<const double> q, Span<const double> edge_coordina
     }
     return sample_edges(mesh_, q.data() + position_.coordinate, frame_quaternions(manifold_, orientation),
                         edge_coordinate, out);
+  });
+}
+
+Status EdgeFrames::adopt(const CurveShape& shape, Span<double> q) const noexcept {
+  return guard([&]() -> Status {
+    if (Status status = check_shape(mesh_, shape); !status.ok()) return status;
+    adopt_positions(mesh_, shape, position_, length_, q);
+    double* orientation = q.data() + orientation_.coordinate;
+    if (manifold_ == Manifold::circle) {
+      const std::vector<double> angles = adopted_angles(mesh_, shape, held_start_, first_angle_);
+      std::copy(angles.begin(), angles.end(), orientation);
+    } else {
+      std::copy(shape.orientation.begin(), shape.orientation.end(), orientation);
+    }
+    const int d = mesh_.dimension();
+    for (int i = 0; edge_length_.exists() && i < mesh_.edges(); ++i) {
+      const double* p = shape.position.data() + i * d;
+      q[at(edge_length_.coordinate_of(i))] = std::hypot(p[d] - p[0], p[d + 1] - p[1], d == 3 ? p[d + 2] - p[2] : 0.0);
+    }
+    if (held_tangent_.exists()) std::copy(held_start_.begin(), held_start_.end(), q.data() + held_tangent_.coordinate);
+    return {};
   });
 }
 

@@ -20,6 +20,8 @@ class EdgeFrames final : public Kinematics {
   Status declare(const CurveView& curve, const Needs& needs, KinematicsDeclaration& out) noexcept override;
   Status evaluate(const SiteEvaluation& evaluation) const noexcept override;
   Status sample(Span<const double> q, Span<const double> edge_coordinate, CurveSample& out) const noexcept override;
+  /// Orientations as they are given; lengths of edges from the positions; held tangents where the start has them.
+  Status adopt(const CurveShape& shape, Span<double> q) const noexcept override;
   /// EI ε π/h², h the shortest edge: an angle of up to π is rounded to ε π, and a moment EI ζ/h acts with arm h.
   double rounding_floor(double bending_stiffness) const noexcept override;
 
@@ -52,6 +54,8 @@ class EdgeFrames final : public Kinematics {
   FieldSlot position_, orientation_, edge_length_, length_, held_tangent_;
   std::vector<int> closed_edges_;    // those with closure rows
   std::vector<double> first_frame_;  // coordinates of the first edge's orientation in State 1
+  std::vector<double> held_start_;   // coordinates of the held tangents at the start
+  double first_angle_ = 0.0;         // of the first edge at the start, in the plane
 
   // What was computed at a state and serves all of its evaluations: strains of the stations, and in the plane, where
   // they are not had without sine and cosine, axes of the closed edges.

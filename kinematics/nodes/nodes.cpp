@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "core/curve_kinematics/adopt.hpp"
 #include "core/curve_kinematics/sample.hpp"
 #include "core/curve_kinematics/sites.hpp"
 #include "core/curve_kinematics/station_output.hpp"
@@ -211,10 +212,17 @@ void Nodes::declare_fields(const Needs& needs, KinematicsDeclaration& out) {
   if (manifold_ == Manifold::rotation) {
     reference_frames_.clear();
     for (int i = 0; i < mesh_.edges(); ++i) reference_frames_.push_back(lie::Rotation::load(reference.data() + 4 * i));
-    angle_ = add_field(angle_field(needs), out);
+    FieldDeclaration angle = angle_field(needs);
+    first_angle_ = angle.start.front();
+    angle_ = add_field(std::move(angle), out);
   }
   if (mesh_.sliding()) length_ = add_field(length_field(mesh_), out);
-  if (mesh_.held_tangents > 0) held_tangent_ = add_field(held_tangent_field(mesh_, manifold_, reference), out);
+  held_start_.clear();
+  if (mesh_.held_tangents > 0) {
+    FieldDeclaration held = held_tangent_field(mesh_, manifold_, reference);
+    held_start_ = held.start;
+    held_tangent_ = add_field(std::move(held), out);
+  }
 }
 
 /// Zero in State 1, whose frames are Bishop's. The start's are as well: the angle is what State 1's miss of them when
@@ -457,6 +465,28 @@ Status Nodes::sample(Span<const double> q, Span<const double> edge_coordinate, C
       frames = frame_quaternions(manifold_, transported_orientations(manifold_, tangents, first_frame_.data()));
     }
     return sample_edges(mesh_, points, frames, edge_coordinate, out);
+  });
+}
+
+Status Nodes::adopt(const CurveShape& shape, Span<double> q) const noexcept {
+  return guard([&]() -> Status {
+    if (Status status = check_shape(mesh_, shape); !status.ok()) return status;
+    adopt_positions(mesh_, shape, position_, length_, q);
+    if (held_tangent_.exists()) std::copy(held_start_.begin(), held_start_.end(), q.data() + held_tangent_.coordinate);
+    if (!angle_.exists()) return {};
+    const std::vector<double> tangents = edge_tangents(mesh_, shape.position.data());
+    double before = first_angle_;
+    for (int i = 0; i < mesh_.edges(); ++i) {
+      FrameSide side;
+      side.tangent = Vector3::load(tangents.data() + 3 * i);
+      const lie::Rotation& reference = reference_frames_[at(i)];
+      if (!has_frame({&reference, 0.0}, side)) return no_orientation(i, q.data());
+      const lie::Rotation given = lie::transport(lie::Rotation::load(shape.orientation.data() + 4 * i), side.tangent);
+      double angle = lie::log(lie::transport(reference, side.tangent).inverse() * given)[0];
+      angle -= 2.0 * M_PI * std::round((angle - before) / (2.0 * M_PI));
+      q[at(angle_.coordinate_of(i))] = before = angle;
+    }
+    return {};
   });
 }
 

@@ -25,6 +25,9 @@ class Nodes final : public Kinematics {
   /// State 1, so that its frame cannot follow.
   Status evaluate(const SiteEvaluation& evaluation) const noexcept override;
   Status sample(Span<const double> q, Span<const double> edge_coordinate, CurveSample& out) const noexcept override;
+  /// Positions as they are given; angles, without jumps along the curve, from how the orientations are turned about
+  /// their edges. `failed` where an edge has turned by half a turn against State 1.
+  Status adopt(const CurveShape& shape, Span<double> q) const noexcept override;
   /// EI ε |p|/h³, |p| the largest distance from the origin and h the shortest edge: a position is rounded to ε |p|,
   /// which turns an edge by ε |p|/h, and a moment EI ζ/h acts with arm h.
   double rounding_floor(double bending_stiffness) const noexcept override;
@@ -62,6 +65,8 @@ class Nodes final : public Kinematics {
   /// site `closure`.
   std::vector<int> measured_edges_;
   std::vector<double> first_frame_;  // coordinates of the first edge's orientation in State 1
+  std::vector<double> held_start_;   // coordinates of the held tangents at the start
+  double first_angle_ = 0.0;         // of the first edge at the start
 
   // What was computed at a state and serves all of its evaluations: tangent and length of each edge; the sides of the
   // stations, those of held tangents last, and their strains.
