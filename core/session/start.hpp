@@ -32,8 +32,9 @@ struct Start {
 std::vector<double> carried_coordinates(const Scene& scene, const CarriedState& carried, const CarriedCurves& shapes,
                                         std::vector<DocumentFlaw>& flaws, std::vector<std::string>& warnings);
 
-/// The multipliers of a carried state for these rows. Those of a group of another count are zero, with a warning; those
-/// of curves on another mesh are zero, which one warning says.
+/// The multipliers of a carried state for these rows. Those of rows on a curve of another mesh are interpolated by the
+/// material that they stand at, rows being taken as evenly spread over nodes; those of a group of another count on the
+/// same mesh, or of another kinematics, are zero, with a warning.
 std::vector<double> carried_multipliers(const Scene& scene, const std::vector<RowOrigin>& rows,
                                         const CarriedState& carried, const CarriedCurves& shapes,
                                         std::vector<std::string>& warnings);
