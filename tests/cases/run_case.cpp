@@ -5,6 +5,7 @@
 //   [[run]]
 //   name   = "N = 40"
 //   full   = true                                # only in the full test
+//   composition = "other.toml"                   # another one for this run
 //   set    = { "vessel.iliac.geometry.nodes" = "40" }        # TOML texts, as after --set
 //   expect = { "quantities.peak_displacement_mm" = { value = 13.10, relative = 0.01 },
 //              "solver.iterations" = { at-most = 25 }, "status" = { is = "converged" } }
@@ -255,7 +256,10 @@ int main(int argc, char** argv) {
   if (argc != 2) return std::fprintf(stderr, "usage: run-case FILE\n"), 2;
   const std::filesystem::path case_file = argv[1];
   const toml::table table = toml::parse_file(case_file.string());
-  const std::string composition = (case_file.parent_path() / table["composition"].value_or(std::string())).string();
+  const auto composition_of = [&](const toml::table& run) {
+    const std::string common = table["composition"].value_or(std::string());
+    return (case_file.parent_path() / run["composition"].value_or(common)).string();
+  };
   const bool full = std::getenv("BOWSTRING_TEST_FULL") != nullptr;
   std::string data;
   Tally tally;
@@ -276,7 +280,7 @@ int main(int argc, char** argv) {
       ++tally.skipped;
       continue;
     }
-    const Json document = solve(composition, run, data);
+    const Json document = solve(composition_of(run), run, data);
     if (document.is_null()) {
       tally.check(false, name + ": refused");
       continue;
