@@ -8,6 +8,7 @@
 #include "core/enforcement/row_choice.hpp"
 #include "core/enforcement/softened_problem.hpp"
 #include "core/interfaces/enforcement.hpp"
+#include "enforcement/augmented-lagrangian/law.hpp"
 #include "enforcement/shared/bias.hpp"
 #include "enforcement/shared/keys.hpp"
 #include "enforcement/shared/row_sides.hpp"
@@ -17,17 +18,11 @@
 namespace bowstring {
 namespace {
 
+using augmented::AugmentedLaw;
 using softening::RowSides;
 
 constexpr ParameterDeclaration schema[] = {
-    {.key = "first-weight",
-     .type = ParameterType::scalar,
-     .unit = "N/mm",
-     .default_text = "\"1e3 N/mm\"",
-     .description =
-         "stiffness of a row in the first solve; the result does not depend on it, the number of solves does",
-     .lower = 0.0,
-     .lower_exclusive = true},
+    softening::first_weight_key,
     {.key = "growth",
      .type = ParameterType::scalar,
      .unit = "",
@@ -58,44 +53,6 @@ constexpr double share_falls = 0.5, least_share = 1e-3;
 constexpr double settled_multipliers = 1e-7;  // of the largest one
 constexpr double settling = 0.5;              // a change that falls by less is at its rounding
 constexpr double rounding_share = 0.1;        // of the tolerance that rounding of rows may make of forces
-
-/// λ r + ½ w r² of equality rows; of sides r ≤ 0 the same while λ + w r > 0, and constant beyond.
-class AugmentedLaw final : public RowLaw {
- public:
-  explicit AugmentedLaw(const RowSides& sides, int rows)
-      : multipliers(static_cast<std::size_t>(rows), 0.0), sides_(sides) {}
-
-  double weight = 0.0;
-  std::vector<double> multipliers;  ///< of all rows; read of those taken away
-
-  RowEnergy at(int row, double value) const noexcept override {
-    const double lower = sides_.lower(row), upper = sides_.upper(row);
-    const double multiplier = multipliers[static_cast<std::size_t>(row)];
-    if (lower == upper) {
-      const double off = value - upper;
-      return {off * (multiplier + 0.5 * weight * off), multiplier + weight * off, weight};
-    }
-    RowEnergy out;
-    if (std::isfinite(upper)) out = side(value - upper, std::max(multiplier, 0.0));
-    if (std::isfinite(lower)) {
-      const RowEnergy other = side(lower - value, std::max(-multiplier, 0.0));
-      out.energy += other.energy;
-      out.force -= other.force;
-      out.stiffness += other.stiffness;
-    }
-    return out;
-  }
-  double stiffest() const noexcept override { return weight; }
-
- private:
-  RowEnergy side(double r, double multiplier) const noexcept {
-    const double force = multiplier + weight * r;
-    if (!(force > 0.0)) return {-0.5 * multiplier * multiplier / weight, 0.0, 0.0};
-    return {r * (multiplier + 0.5 * weight * r), force, weight};
-  }
-
-  const RowSides& sides_;
-};
 
 /// How far rows and multipliers are from where they belong.
 struct Distance {

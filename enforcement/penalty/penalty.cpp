@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -6,6 +7,7 @@
 #include "core/enforcement/row_choice.hpp"
 #include "core/enforcement/softened_problem.hpp"
 #include "core/interfaces/enforcement.hpp"
+#include "enforcement/penalty/law.hpp"
 #include "enforcement/shared/bias.hpp"
 #include "enforcement/shared/keys.hpp"
 #include "enforcement/shared/row_sides.hpp"
@@ -15,6 +17,7 @@
 namespace bowstring {
 namespace {
 
+using namespace penalty;
 using softening::RowSides;
 
 constexpr ParameterDeclaration schema[] = {
@@ -42,6 +45,7 @@ constexpr ParameterDeclaration schema[] = {
                     "quadratic",
      .lower = 0.0,
      .lower_exclusive = true},
+    softening::first_weight_key,
     softening::on_key,
     {.key = "bias",
      .type = ParameterType::choice,
@@ -52,63 +56,15 @@ constexpr ParameterDeclaration schema[] = {
      .choices = "estimated|measured"},
 };
 
-/// Of r ≤ 0: φ = ½ w max(r, 0)².
-struct Quadratic {
-  double weight = 0.0;
-  RowEnergy operator()(double r) const noexcept {
-    if (!(r > 0.0)) return {};
-    return {0.5 * weight * r * r, weight * r, weight};
-  }
-};
-
-/// Of r ≤ 0, with d = f/w: φ = −(f²/w) ln(−r/d) up to r = −d, and from there its Taylor polynomial of second order.
-struct LogQuadratic {
-  double weight = 0.0, force = 0.0;
-  RowEnergy operator()(double r) const noexcept {
-    const double d = force / weight;
-    if (r <= -d) {
-      const double barrier = force * d;
-      return {-barrier * std::log(-r / d), -barrier / r, barrier / (r * r)};
-    }
-    const double t = r + d;
-    return {force * t + 0.5 * weight * t * t, force + weight * t, weight};
-  }
-};
-
-/// φ over the finite sides of a row; an equality row has the parabola ½ w r² on both.
-template <class Form>
-class PenaltyLaw final : public RowLaw {
- public:
-  PenaltyLaw(const RowSides& sides, const Form& form) : sides_(sides), form_(form) {}
-
-  RowEnergy at(int row, double value) const noexcept override {
-    const double lower = sides_.lower(row), upper = sides_.upper(row);
-    if (lower == upper) {
-      const double off = value - upper;
-      return {0.5 * form_.weight * off * off, form_.weight * off, form_.weight};
-    }
-    RowEnergy out;
-    if (std::isfinite(upper)) out = form_(value - upper);
-    if (std::isfinite(lower)) {
-      const RowEnergy side = form_(lower - value);
-      out.energy += side.energy;
-      out.force -= side.force;
-      out.stiffness += side.stiffness;
-    }
-    return out;
-  }
-  double stiffest() const noexcept override { return form_.weight; }
-
- private:
-  const RowSides& sides_;
-  Form form_;
-};
+constexpr double weight_rises = 10.0;
+constexpr double intermediate = 0.1;  // of the largest force: the stationarity that ends a solve with a smaller weight
 
 /// Rows become energies of a given stiffness. See README.md.
 class Penalty final : public Enforcement {
  public:
   explicit Penalty(const ParameterSet& parameters)
       : weight_(parameters.scalar("weight")),
+        first_weight_(parameters.scalar("first-weight")),
         smoothing_force_(parameters.scalar("smoothing-force")),
         smooth_(parameters.text("form") == "log-quadratic"),
         measured_(parameters.text("bias") == "measured"),
@@ -124,7 +80,7 @@ class Penalty final : public Enforcement {
   }
 
  private:
-  std::unique_ptr<RowLaw> make_law() const {
+  std::unique_ptr<WeightedLaw> make_law() const {
     if (smooth_) {
       return std::make_unique<PenaltyLaw<LogQuadratic>>(*sides_, LogQuadratic{weight_, smoothing_force_});
     }
@@ -140,20 +96,44 @@ class Penalty final : public Enforcement {
     softening::Solves solves(context, *sides_, out);
     std::vector<double> kept(context.multipliers.empty() ? 0 : remaining_->kept_rows().size());
     if (!kept.empty()) remaining_->gather(context.multipliers, kept);
-    SolverResult found;
-    if (Status status = solves.run(*remaining_, solver, {start.begin(), start.end()}, kept, {}, found); !status.ok()) {
-      return status;
+    out.q.assign(start.begin(), start.end());
+    if (Status status = climb(solver, solves, kept, out); !status.ok()) return status;
+    return judge(problem, solver, kept, context, out);
+  }
+
+  /// Solves with weights that rise to the one asked for. Where multipliers are given the start is near a solution, and
+  /// that weight is the first one.
+  Status climb(Solver& solver, softening::Solves& solves, std::vector<double>& kept, SolverResult& out) {
+    const bool near = !kept.empty() || remaining_->soft_rows().empty();
+    double weight = near ? weight_ : std::min(weight_, first_weight_);
+    for (int k = 1;; ++k, weight = std::min(weight_, weight_rises * weight)) {
+      law_->set_weight(weight);
+      const auto enough = [&](const IterationRecord& record) {
+        return weight < weight_ && record.stationarity <= intermediate * largest_force();
+      };
+      SolverResult found;
+      if (Status status = solves.run(*remaining_, solver, out.q, kept, enough, found); !status.ok()) return status;
+      out.q = found.q;
+      out.claim = found.claim;
+      out.reason = found.reason;
+      out.enforcement.outer_iterations = k;
+      out.enforcement.weight = weight;
+      if (weight == weight_ || (!solves.was_enough() && out.claim != Claim::optimal)) return {};
     }
-    out.q = found.q;
-    out.claim = found.claim;
-    out.reason = found.reason;
-    out.enforcement.weight = weight_;
-    return judge(problem, solver, solves, kept, context, out);
+  }
+
+  /// N, of the rows taken away, at the point that was last evaluated.
+  double largest_force() const noexcept {
+    double largest = 0.0;
+    for (const int r : remaining_->soft_rows()) {
+      largest = std::max(largest, std::fabs(law_->at(r, remaining_->last_rows()[static_cast<std::size_t>(r)]).force));
+    }
+    return largest;
   }
 
   /// What the rows are left with, and what that costs.
-  Status judge(Problem& problem, Solver& solver, const softening::Solves& solves, const std::vector<double>& kept,
-               const SolverContext& context, SolverResult& out) {
+  Status judge(Problem& problem, Solver& solver, const std::vector<double>& kept, const SolverContext& context,
+               SolverResult& out) {
     std::vector<double> rows(static_cast<std::size_t>(problem.rows())), multipliers(rows.size(), 0.0);
     double energy = 0.0;
     ProblemEvaluation wanted;
@@ -172,12 +152,18 @@ class Penalty final : public Enforcement {
     out.enforcement.penetration = bias.violation;
     out.enforcement.energy = bias.energy;
     std::string measured;
-    if (measured_ && all_known && !solves.stopped_by_user()) {
+    if (measured_ && all_known && out.claim == Claim::optimal) {
       if (Status status = measure(problem, solver, energy, multipliers, context, out, measured); !status.ok()) {
         return status;
       }
     }
-    if (!remaining_->soft_rows().empty()) out.reason += describe(bias, measured);
+    if (remaining_->soft_rows().empty()) return {};
+    if (out.claim == Claim::optimal && *out.enforcement.weight == weight_) {
+      out.reason += describe(bias, measured);
+    } else {
+      out.reason += ", with the penalty's weight at " + softening::number(*out.enforcement.weight) + " of " +
+                    softening::number(weight_) + " N/mm";
+    }
     return {};
   }
 
@@ -229,12 +215,12 @@ class Penalty final : public Enforcement {
     return status.ok() && problem.epoch_due() ? problem.new_epoch() : status;
   }
 
-  double weight_, smoothing_force_;
+  double weight_, first_weight_, smoothing_force_;
   bool smooth_, measured_;
   std::vector<std::string> on_;
   // Of the last solve: a solver may lend its system afterwards.
   std::unique_ptr<RowSides> sides_;
-  std::unique_ptr<RowLaw> law_;
+  std::unique_ptr<WeightedLaw> law_;
   std::unique_ptr<SoftenedProblem> remaining_;
 };
 
