@@ -97,14 +97,13 @@ class Penalty final : public Enforcement {
     std::vector<double> kept(context.multipliers.empty() ? 0 : remaining_->kept_rows().size());
     if (!kept.empty()) remaining_->gather(context.multipliers, kept);
     out.q.assign(start.begin(), start.end());
-    if (Status status = climb(solver, solves, kept, out); !status.ok()) return status;
+    const bool near = !context.multipliers.empty() || remaining_->soft_rows().empty();
+    if (Status status = climb(solver, solves, near, kept, out); !status.ok()) return status;
     return judge(problem, solver, kept, context, out);
   }
 
-  /// Solves with weights that rise to the one asked for. Where multipliers are given the start is near a solution, and
-  /// that weight is the first one.
-  Status climb(Solver& solver, softening::Solves& solves, std::vector<double>& kept, SolverResult& out) {
-    const bool near = !kept.empty() || remaining_->soft_rows().empty();
+  /// Solves with weights that rise to the one asked for, which is the first one where the start is `near` a solution.
+  Status climb(Solver& solver, softening::Solves& solves, bool near, std::vector<double>& kept, SolverResult& out) {
     double weight = near ? weight_ : std::min(weight_, first_weight_);
     for (int k = 1;; ++k, weight = std::min(weight_, weight_rises * weight)) {
       law_->set_weight(weight);
