@@ -226,6 +226,25 @@ TEST_CASE("a soft wire does not tunnel where weights begin firm enough: the guar
   }
 }
 
+TEST_CASE("a result is a start: a bias is no reason to begin anew, and few iterations are left to do") {
+  const Scene scene = scenes().front();
+  for (const char* type : {"penalty", "augmented-lagrangian"}) {
+    CAPTURE(std::string(type));
+    SolvedScene found = solved_by(scene, "interior-point", {{"enforcement.type", type}});
+    const int cold = found.solution.solver.iterations;
+    Start start;
+    start.q = found.solution.q;
+    start.multipliers = found.solution.multipliers;
+    const Solution again = solve(*found.session, {}, &start);
+    CHECK(again.certificate.verdict == found.solution.certificate.verdict);
+    CHECK(again.solver.enforcement.outer_iterations == 1);
+    CHECK(again.solver.iterations <= 3);
+    CHECK(cold > 10);
+    for (const std::string& warning : again.warnings) CHECK_FALSE(contains(warning, "from the given start"));
+    CHECK(found.assembly().largest_motion(start.q, again.q) <= 1e-9);
+  }
+}
+
 TEST_CASE("the same bits again") {
   const Scene scene = scenes().front();
   for (const char* type : {"penalty", "augmented-lagrangian"}) {
