@@ -467,6 +467,19 @@ std::unique_ptr<EuclideanProblem> Assembly::chart(Span<const double> base) {
   return std::make_unique<EuclideanChart>(*this, base);
 }
 
+double Assembly::largest_motion(Span<const double> from, Span<const double> to) const noexcept {
+  double largest = 0.0;
+  for (const FieldEntry& entry : entries_) {
+    if (entry.manifold != Manifold::vector) continue;
+    double squared = 0.0;
+    for (int k = entry.coordinate; k < entry.coordinate + entry.dimension; ++k) {
+      squared += (to[at(k)] - from[at(k)]) * (to[at(k)] - from[at(k)]);
+    }
+    largest = std::max(largest, std::sqrt(squared));
+  }
+  return largest;
+}
+
 Status Assembly::term_energies(Span<const double> q, std::vector<double>& out) {
   if (Status status = update_places(q); !status.ok()) return status;
   if (Status status = update_energy(); !status.ok()) return status;

@@ -72,6 +72,7 @@ class Assembly final : public Problem, public PlaceTables {
   Status new_epoch() noexcept override;
   int epochs() const noexcept override { return epochs_; }
   std::unique_ptr<EuclideanProblem> chart(Span<const double> base) override;
+  double largest_motion(Span<const double> from, Span<const double> to) const noexcept override;
 
   /// Table of y at the state last evaluated; null where the site does not exist.
   const double* table(int curve, Site site) const noexcept override;

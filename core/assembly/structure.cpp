@@ -140,11 +140,14 @@ bool Assembly::read_rows() {
     ConstraintRows& rows = constraints_[c];
     const int flawed = rows.bind(use.rows, table_of_, tables_);
     if (flawed >= 0) throw std::runtime_error(missing_place(use, flawed));
+    const int inequalities_before = summary_.inequalities;
     for (int r = 0; r < use.rows.rows; ++r) {
       row_lower_[at(rows.first_row + r)] = use.rows.lower[at(r)];
       row_upper_[at(rows.first_row + r)] = use.rows.upper[at(r)];
       (use.rows.lower[at(r)] == use.rows.upper[at(r)] ? summary_.equalities : summary_.inequalities) += 1;
     }
+    RowGroup& group = summary_.row_groups[summary_.row_groups.size() - constraints_.size() + c];
+    group.inequalities = summary_.inequalities - inequalities_before;
   }
   return count_read() != before;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct RowGroup {
   std::string text;  ///< "edge closure of 'iliac' (158)", for people
   int first = 0, count = 0;
   bool closure = false;  ///< a kinematics' own rows, which no enforcement touches
+  int inequalities = 0;  ///< so many of them; the others are equalities
 };
 
 struct ProblemSummary {
@@ -118,6 +120,13 @@ class Problem {
   virtual int epochs() const noexcept = 0;
 
   virtual std::unique_ptr<EuclideanProblem> chart(Span<const double> base) = 0;
+
+  /// mm: how far the node that moved most stands in one state from where it stands in another; NaN: unknown.
+  virtual double largest_motion(Span<const double> from, Span<const double> to) const noexcept {
+    (void)from;
+    (void)to;
+    return std::numeric_limits<double>::quiet_NaN();
+  }
 };
 
 }  // namespace bowstring

@@ -31,7 +31,7 @@ enum class Claim : int { optimal, stalled, infeasible, diverged, failed };
 struct EnforcementReport {
   int outer_iterations = 1;               ///< solves of what remains
   std::optional<double> weight;           ///< N/mm: the last one of a method that has weights
-  std::optional<double> penetration;      ///< mm: largest violation that the weight leaves, from the multipliers
+  std::optional<double> penetration;      ///< mm: largest violation that the weight leaves
   std::optional<double> energy;           ///< N mm: what exact rows would add to the energy found, estimated …
   std::optional<double> measured_energy;  ///< … and measured, by a solve with exact rows
   std::optional<double> measured_motion;  ///< mm: how far that solve moved a node at most

@@ -16,10 +16,10 @@ using Json = nlohmann::ordered_json;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-Json optional(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 /// A finite number, or null: JSON has no other.
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json optional(const std::optional<double>& value) { return value ? finite(*value) : Json(nullptr); }
 
 Json word(const char* text) { return text == nullptr ? Json(nullptr) : Json(text); }
 
@@ -110,6 +110,17 @@ Json solver(const SessionRecord& session, const Solution& solution) {
         {"total", seconds.total},
         {"evaluation", result.evaluation_seconds},
         {"factorization", result.factorization_seconds > 0.0 ? Json(result.factorization_seconds) : Json(nullptr)}}}};
+}
+
+Json enforcement(const SessionRecord& session, const EnforcementReport& report) {
+  return {{"name", session.enforcement},
+          {"outer_iterations", report.outer_iterations},
+          {"weight_N_per_mm", optional(report.weight)},
+          {"bias",
+           {{"penetration_mm", optional(report.penetration)},
+            {"energy_N_mm", optional(report.energy)},
+            {"measured_energy_N_mm", optional(report.measured_energy)},
+            {"measured_motion_mm", optional(report.measured_motion)}}}};
 }
 
 std::vector<std::string> joined(std::vector<std::string> texts, const std::vector<std::string>& more) {
@@ -343,6 +354,7 @@ void add_state(Json& out, const StateResult& result) {
   if (result.solution.start) out["provenance"]["start"] = start_of(*result.solution.start);
   out["problem"] = problem(result.session);
   out["solver"] = solver(result.session, result.solution);
+  out["enforcement"] = enforcement(result.session, result.solution.solver.enforcement);
   out["certificate"] = certificate(result.solution.certificate);
   out["energy"] = energies(scene, result.readings);
   out["quantities"] = quantities(result.readings.quantities);
@@ -374,6 +386,7 @@ SessionRecord record_of(const Session& session, std::string provenance) {
           std::move(provenance),
           session.composition.title,
           session.composition.solver.name,
+          session.composition.enforcement.name,
           session.assembly->summary(),
           session.assembly->row_origins(),
           session.assembly->epochs(),

@@ -179,6 +179,14 @@ bool was_stopped(const Session& session, const Solution& solution, bool by_user,
          (limit != nullptr && seconds >= limit->number);
 }
 
+/// Whether all that the point lacks is the bias that its enforcement tells of: no other start mends that.
+bool is_merely_biased(const Solution& solution, const CertificateTable& thresholds) {
+  const Certificate& found = solution.certificate;
+  return solution.solver.claim == Claim::optimal && solution.solver.enforcement.penetration.has_value() &&
+         found.stationarity <= thresholds.stationarity && found.minimum_multiplier >= thresholds.multiplier &&
+         found.folds.empty() && found.wire_folds.empty() && found.crossings.empty();
+}
+
 /// Accepts and certifies what the solver found; where it found nothing, its start.
 void judge(Session& session, const std::vector<double>& start, Solution& solution) {
   const auto judging = Clock::now();
@@ -270,6 +278,7 @@ Solution solve(Session& session, const std::function<bool(const IterationRecord&
     solution = solve_from(session, first, from.multipliers, watched);
     const Certificate& found = solution.certificate;
     if (!from.q.empty() && !from.only && found.verdict != Verdict::converged &&
+        !is_merely_biased(solution, session.composition.certificate) &&
         !was_stopped(session, solution, by_user, session.seconds.solve)) {
       const std::string first_verdict = verdict_name(found.verdict), first_reason = found.reason;
       bind_anew(session, {});

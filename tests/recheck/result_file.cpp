@@ -312,7 +312,12 @@ Result read_state_of(const Json& document) {
   out.dimension = composition.at("scene").at("dimension").get<int>();
   if (composition.contains("energy")) out.energies = composition["energy"];
   if (composition.contains("constraint")) out.constraints = composition["constraint"];
-  if (composition.at("enforcement").at("type") != "kkt") out.unknown.push_back("enforcement");
+  // However rows were imposed, state and multipliers have to meet the thresholds; others may mean something else by
+  // them.
+  const std::string enforcement = composition.at("enforcement").at("type").get<std::string>();
+  if (enforcement != "kkt" && enforcement != "penalty" && enforcement != "augmented-lagrangian") {
+    out.unknown.push_back("enforcement");
+  }
   read_thresholds(composition, out.thresholds);
   for (const Json& entry : document.at("curves")) {
     out.curves.push_back(read_curve(composition, entry, out.dimension));
