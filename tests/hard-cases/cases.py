@@ -20,7 +20,7 @@ REFUSED = "refused"
 
 CASE_KEYS = {"why", "composition", "data", "full", "run", "agree"}
 RUN_KEYS = {"name", "each", "set", "start", "full", "data", "verdict", "says", "expect", "monotone", "known-shortfall"}
-SHORTFALL_KEYS = {"solver", "each", "happens"}
+SHORTFALL_KEYS = {"solver", "each", "happens", "recheck"}
 AGREE_KEYS = {"runs", "path", "relative", "absolute"}
 EXPECT_KEYS = {"is", "contains", "value", "relative", "absolute", "at-most", "at-least"}
 
@@ -31,7 +31,8 @@ class WrongCase(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One scene with its expectation. `shortfalls`: {solver: what happens instead}; `part`: the value of `each`."""
+    """One scene with its expectation. `shortfalls`: {solver: what happens instead}; `recheck_shortfalls`: {solver: why
+    the re-check takes a `converged` for none}."""
 
     case: str
     name: str
@@ -42,6 +43,7 @@ class Run:
     expect: dict
     monotone: tuple
     shortfalls: dict
+    recheck_shortfalls: dict
 
 
 @dataclasses.dataclass(frozen=True)
@@ -166,15 +168,17 @@ class Reader:
             after = self.scene_name(case, entry["start"]) if "start" in entry else ""
             scene = scenes.Scene(case, self.scene_name(case, name), (), composition, overrides, after, skip)
             verdicts = entry["verdict"] if isinstance(entry["verdict"], list) else [entry["verdict"]]
-            shortfalls = {}
+            shortfalls, rechecks = {}, {}
             for shortfall in entry.get("known-shortfall", ()):
                 check_keys(f"{case}: known-shortfall", shortfall, SHORTFALL_KEYS)
                 if not shortfall.get("each") or each in shortfall["each"]:
-                    shortfalls[shortfall["solver"]] = shortfall["happens"]
+                    marks = rechecks if shortfall.get("recheck") else shortfalls
+                    for solver in [shortfall["solver"]] if "solver" in shortfall else NATIVE_SOLVERS:
+                        marks[solver] = shortfall["happens"]
             for path, wanted in entry.get("expect", {}).items():
                 check_keys(f"{case}: {name}: {path}", wanted, EXPECT_KEYS)
             yield Run(case, name, scene, full or entry.get("full", False), tuple(verdicts), entry.get("says", ""),
-                      entry.get("expect", {}), tuple(entry.get("monotone", ())), shortfalls)
+                      entry.get("expect", {}), tuple(entry.get("monotone", ())), shortfalls, rechecks)
 
     @staticmethod
     def scene_name(case, run):
