@@ -16,6 +16,7 @@ import results  # noqa: E402
 import scenes  # noqa: E402
 
 NATIVE_SOLVERS = ("interior-point", "active-set")
+REFERENCE_SOLVER = "ipopt"
 REFUSED = "refused"
 
 CASE_KEYS = {"why", "composition", "data", "full", "run", "agree"}
@@ -173,7 +174,7 @@ class Reader:
                 check_keys(f"{case}: known-shortfall", shortfall, SHORTFALL_KEYS)
                 if not shortfall.get("each") or each in shortfall["each"]:
                     marks = rechecks if shortfall.get("recheck") else shortfalls
-                    for solver in [shortfall["solver"]] if "solver" in shortfall else NATIVE_SOLVERS:
+                    for solver in [shortfall["solver"]] if "solver" in shortfall else (*NATIVE_SOLVERS, REFERENCE_SOLVER):
                         marks[solver] = shortfall["happens"]
             for path, wanted in entry.get("expect", {}).items():
                 check_keys(f"{case}: {name}: {path}", wanted, EXPECT_KEYS)
