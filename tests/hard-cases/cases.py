@@ -32,13 +32,14 @@ class WrongCase(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """One scene with its expectation. `shortfalls`: {solver: what happens instead}; `recheck_shortfalls`: {solver: why
-    the re-check takes a `converged` for none}."""
+    """One scene with its expectation. `first`: of those that its entry makes; `shortfalls`: {solver: what happens
+    instead}; `recheck_shortfalls`: {solver: why the re-check takes a `converged` for none}."""
 
     case: str
     name: str
     scene: scenes.Scene
     full: bool
+    first: bool
     verdicts: tuple
     says: str
     expect: dict
@@ -140,7 +141,8 @@ class Reader:
         check_keys(name, table, CASE_KEYS)
         for key in ("why", "composition", "run"):
             if not table.get(key):
-                raise WrongCase(f"{name}: '{key}' is missing; expected why it is hard and what is true, a composition, runs")
+                raise WrongCase(f"{name}: '{key}' is missing; expected why it is hard and what is true, a composition, "
+                                "runs")
         composition = self.composition(name, file, table["composition"])
         data = table.get("data", "")
         skip = f"{scenes.DATA} is not set" if data and not self.data else ""
@@ -161,11 +163,12 @@ class Reader:
         for key in ("name", "verdict"):
             if key not in entry:
                 raise WrongCase(f"{case}: a [[run]] without '{key}'")
-        for each in entry.get("each", [""]):
+        for number, each in enumerate(entry.get("each", [""])):
             name = f"{entry['name']} {each}".strip() if "{each}" not in entry["name"] else entry["name"].replace(
                 "{each}", each)
             points = self.points(case, data, each)
-            overrides = tuple((path, self.filled(value, each, points)) for path, value in entry.get("set", {}).items())
+            overrides = tuple((path, self.filled(value, each, points))
+                              for path, value in entry.get("set", {}).items())
             after = self.scene_name(case, entry["start"]) if "start" in entry else ""
             scene = scenes.Scene(case, self.scene_name(case, name), (), composition, overrides, after, skip)
             verdicts = entry["verdict"] if isinstance(entry["verdict"], list) else [entry["verdict"]]
@@ -178,7 +181,8 @@ class Reader:
                         marks[solver] = shortfall["happens"]
             for path, wanted in entry.get("expect", {}).items():
                 check_keys(f"{case}: {name}: {path}", wanted, EXPECT_KEYS)
-            yield Run(case, name, scene, full or entry.get("full", False), tuple(verdicts), entry.get("says", ""),
+            yield Run(case, name, scene, full or entry.get("full", False), number == 0,
+                      tuple(verdicts), entry.get("says", ""),
                       entry.get("expect", {}), tuple(entry.get("monotone", ())), shortfalls, rechecks)
 
     @staticmethod
@@ -187,7 +191,7 @@ class Reader:
 
 
 def looked_up(document, path):
-    """The value at a path, entries of lists by number (negative from the end); "*" gathers over a list. None: absent."""
+    """The value at a path, entries of lists by number (negative from the end), "*" for all of a list. None: absent."""
     keys = path.split(".")
     for number, key in enumerate(keys):
         if key == "*" and isinstance(document, list):
@@ -214,7 +218,7 @@ def text_of(value):
 
 
 def unmet(value, wanted):
-    """What a value lacks of an expectation {is | contains | value + relative/absolute | at-most | at-least}; "" if none."""
+    """What a value lacks of an expectation (the keys are EXPECT_KEYS), "" if nothing."""
     if "is" in wanted and value != wanted["is"]:
         return f"expected {wanted['is']}"
     if "contains" in wanted and wanted["contains"] not in str(value):
@@ -278,4 +282,5 @@ def disagreement(agreement, documents):
     allowed = agreement.get("absolute", agreement.get("relative", 0.0) * abs(values[0]))
     if spread <= allowed:
         return ""
-    return f"{path} of {', '.join(agreement['runs'])}: {', '.join(map(text_of, values))}; expected within {text_of(allowed)}"
+    return (f"{path} of {', '.join(agreement['runs'])}: {', '.join(map(text_of, values))}; expected within "
+            f"{text_of(allowed)}")

@@ -16,6 +16,7 @@ import grid
 import results
 
 SKIPPED = 77
+SHORT = "BOWSTRING_TEST_SHORT"
 
 
 class Tally:
@@ -53,10 +54,15 @@ def judge(run, row, document, tally, demanded):
         tally.check(not found, f"{where}{'; ' + '; '.join(found) if found else ''}")
 
 
+def shortened(runs):
+    """The first run of each entry, for builds that are slow."""
+    return [run for run in runs if run.first]
+
+
 def solve(runner, case, solver, full):
     """[(run, row, document)] of one case by one solver; runs that only the full test has are left out."""
     out = []
-    for run in case.runs:
+    for run in shortened(case.runs) if SHORT in os.environ else case.runs:
         if run.full and not full:
             continue
         row, _ = runner.run(run.scene, solver)

@@ -106,7 +106,8 @@ class Judging(Folder):
     def test_figures_are_demanded_of_the_first_verdict_alone(self):
         faults = cases.faults
         self.assertEqual(faults(self.run_, self.row("converged"), {"energy": {"total": 3.1}}), [])
-        self.assertIn("energy.total = 4, expected 3", faults(self.run_, self.row("converged"), {"energy": {"total": 4.0}})[0])
+        self.assertIn("energy.total = 4, expected 3",
+                      faults(self.run_, self.row("converged"), {"energy": {"total": 4.0}})[0])
         self.assertIn("not in the result", faults(self.run_, self.row("converged"), {"energy": {}})[0])
         self.assertEqual(faults(self.run_, self.row("invalid"), {"energy": {"total": 9.0}}), [])
         self.assertIn("stalled, expected converged or invalid", faults(self.run_, self.row("stalled"), {})[0])
