@@ -177,7 +177,8 @@ class Reader:
                 check_keys(f"{case}: known-shortfall", shortfall, SHORTFALL_KEYS)
                 if not shortfall.get("each") or each in shortfall["each"]:
                     marks = rechecks if shortfall.get("recheck") else shortfalls
-                    for solver in [shortfall["solver"]] if "solver" in shortfall else (*NATIVE_SOLVERS, REFERENCE_SOLVER):
+                    every = (*NATIVE_SOLVERS, REFERENCE_SOLVER)
+                    for solver in [shortfall["solver"]] if "solver" in shortfall else every:
                         marks[solver] = shortfall["happens"]
             for path, wanted in entry.get("expect", {}).items():
                 check_keys(f"{case}: {name}: {path}", wanted, EXPECT_KEYS)
