@@ -276,6 +276,17 @@ ChordDerivatives chord_derivatives(const Centerline& curve, const WirePoint& poi
   return {p.t, sigma_moves ? p.t_t - p.sigma_t * p.sigma_t / p.sigma_sigma : p.t_t};
 }
 
+/// Where on [0, 1] the cubic with these values and slopes, both of one sign, runs the other way the most; outside of
+/// ]0, 1[ where it runs one way.
+double steepest_against(double value_0, double slope_0, double value_1, double slope_1) noexcept {
+  const double rise = value_1 - value_0;
+  const double linear = 3.0 * rise - 2.0 * slope_0 - slope_1, square = slope_0 + slope_1 - 2.0 * rise;
+  if (square == 0.0) return -1.0;
+  const double t = -linear / (3.0 * square);
+  const double slope = slope_0 + t * (2.0 * linear + 3.0 * t * square);
+  return slope * (slope_0 + slope_1) < 0.0 ? t : -1.0;
+}
+
 /// weight·(φ_zz − φ_zη φ_ηη⁻¹ φ_ηz), packed. With d = Σ_a w_a z_a it is, by blocks of nodes a and b,
 ///   φ_zz = w_a w_b (2 F_r I + 4 F_rr d dᵀ),   φ_zη = 2 w_a (F_rr r_η + F_rc c_η) d + 2 F_r (w_{a,η} d + w_a d_η).
 template <int dim>
@@ -470,17 +481,32 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
   const double bend = high.slope - low.slope;
   const double end_sigma[2] = {low.closest.at.sigma(), high.closest.at.sigma()};
   const auto answer = [&](const Sample& sample, bool interior) {
-    return ChordExtremum{sample.t, interior, bend, {end_sigma[0], end_sigma[1]}, sample.closest};
+    return ChordExtremum{sample.t,
+                         interior,
+                         interior ? -std::fabs(bend) : std::max(bend, 0.0),
+                         {end_sigma[0], end_sigma[1]},
+                         sample.closest};
   };
   if (low.closest.location == Location::window_edge) return answer(low, false);
   if (high.closest.location == Location::window_edge) return answer(high, false);
   if (low.slope <= 0.0 && high.slope >= 0.0) {
     return answer(sign * low.closest.gap >= sign * high.closest.gap ? low : high, false);
   }
-  if (low.slope <= 0.0 || high.slope >= 0.0) return answer(high.slope >= 0.0 ? high : low, false);
+  if (low.slope <= 0.0 || high.slope >= 0.0) {
+    // The same way at both ends: between them it may still rise and fall, as on a chord that is long for the wall's
+    // bends.
+    const Sample& end = high.slope >= 0.0 ? high : low;
+    const double t = steepest_against(sign * low.closest.gap, low.slope, sign * high.closest.gap, high.slope);
+    if (!(t > 0.0 && t < 1.0)) return answer(end, false);
+    const Sample between = at(margin + t * (1.0 - 2.0 * margin), end.closest.at.sigma());
+    if (between.closest.location == Location::window_edge || !(between.slope * end.slope < 0.0))
+      return answer(end, false);
+    (between.slope > 0.0 ? low : high) = between;
+  }
 
   // Newton's steps on the slope from the secant's, by bisection where they leave the bracket.
-  Sample here = at(low.slope / (low.slope - high.slope), low.closest.at.sigma());
+  const double secant = low.t + (high.t - low.t) * low.slope / (low.slope - high.slope);
+  Sample here = at(secant, low.closest.at.sigma());
   for (int i = 0; i < max_steps; ++i) {
     if (here.closest.location == Location::window_edge || std::isnan(here.slope)) break;
     if (here.slope == 0.0) break;
