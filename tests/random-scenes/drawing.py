@@ -22,7 +22,8 @@ NODES = (12, 640)
 MESH_RATIO = (1.0 / 3.0, 3.0)
 FEWEST_WIRE_NODES = 8
 VESSEL_TURN = 0.5    # rad between neighbouring edges of State 1
-WIRE_TURN = 0.8
+WIRE_TURN = 0.6
+WIRE_EDGE = 4.0      # of the smallest clearance: a longer chord does not see the bends that it is in
 TUBE_CURVATURE = 0.75
 RADIUS_SLOPE = 0.3
 REGULARITY = 0.2     # 1 − Rκ − R'² − RR'' at every node: the wall has a normal there
@@ -35,6 +36,7 @@ TENSION = 30.0
 ROWS_APART = 0.65    # of the clearance, as rows-per-segment = "auto" keeps them
 END_MOVE = 0.3       # of the smallest clearance
 END_TURN = math.radians(10.0)
+ROLLER_TISSUE = 100.0  # mm²: times the foundation's modulus, the tension that an end on a roller may bear
 CONTINUED_FROM = 0.05
 
 
@@ -177,18 +179,19 @@ def draw_tube(stream, dimension):
             return shape, lumen, wire_radius
 
 
-def draw_meshes(stream, shape, lumen, span, same):
-    """Nodes of vessel and wire. Bends are resolved: edges of State 1 turn by at most VESSEL_TURN and WIRE_TURN."""
+def draw_meshes(stream, shape, lumen, span, same, clearance):
+    """Nodes of vessel and wire. Bends are resolved: edges of State 1 turn by at most VESSEL_TURN and WIRE_TURN, and no
+    chord is longer than WIRE_EDGE clearances."""
     sharpest = max(shape.curvature)
     fewest = max(NODES[0], math.ceil(1.0 + sharpest * shape.length / VESSEL_TURN))
     while True:
         vessel = round(stream.logarithmic(min(fewest, NODES[1]), NODES[1]))
         if not regular(shape, lumen, vessel):
             continue
-        if same:
-            return vessel, vessel
-        wire = round((vessel - 1) * span / shape.length * stream.logarithmic(*MESH_RATIO)) + 1
-        if wire >= FEWEST_WIRE_NODES and sharpest * span / (wire - 1) <= WIRE_TURN:
+        ratio = 1.0 if same else stream.logarithmic(*MESH_RATIO)
+        wire = round((vessel - 1) * span / shape.length * ratio) + 1
+        edge = span / (wire - 1) if wire > 1 else span
+        if wire >= FEWEST_WIRE_NODES and sharpest * edge <= WIRE_TURN and edge <= WIRE_EDGE * clearance:
             return vessel, wire
 
 
@@ -208,10 +211,12 @@ def small_turn(stream, dimension):
                                      for _ in range(2)]
 
 
-def draw_wire_end(stream, dimension, reach, sliding):
-    """(label, value). `reach`: how far an end may be moved, mm."""
-    label = stream.pick({"pinned": 0.35, "clamped": 0.3, "pinned-moved": 0.1, "clamped-moved": 0.1, "clamped-turned": 0.1,
-                         "roller": 0.05})
+def draw_wire_end(stream, dimension, reach, roller):
+    """(label, value). `reach`: how far an end may be moved, mm; `roller`: whether it may move across its direction."""
+    label = stream.pick({"pinned": 0.33, "clamped": 0.3, "pinned-moved": 0.1, "clamped-moved": 0.1, "clamped-turned": 0.1,
+                         "roller": 0.07})
+    if label == "roller" and not roller:
+        label = "pinned"
     if label in ("pinned", "clamped"):
         return label, label
     table = {"type": label.partition("-")[0]}
@@ -279,7 +284,7 @@ def draw(seed, number, group="posed", continuation=False):
     partly = contact != "same-index" and flaw != "push" and stream.chance(0.25)
     span = shape.length if not partly else drawn(shape.length * stream.uniform(0.35, 0.9))
     free_tip = flaw != "push" and stream.chance(0.7 if partly else 0.15)
-    vessel_nodes, wire_nodes = draw_meshes(stream, shape, lumen, span, contact == "same-index")
+    vessel_nodes, wire_nodes = draw_meshes(stream, shape, lumen, span, contact == "same-index", clearance)
 
     way = stream.pick({"edge-frames": 0.6, "nodes": 0.25, "wire-nodes": 0.075, "vessel-nodes": 0.075})
     kinematics = {"edge-frames": ("edge-frames", "edge-frames"), "nodes": ("nodes", "nodes"),
@@ -287,19 +292,21 @@ def draw(seed, number, group="posed", continuation=False):
     gap = stream.pick({"squared": 0.8, "smooth-distance": 0.2})
     rows = "auto" if contact != "segment-wise" and span / (wire_nodes - 1) > ROWS_APART * clearance else 1
 
-    first_label, first = draw_wire_end(stream, dimension, END_MOVE * clearance, not free_tip)
-    if free_tip and first_label in ("pinned", "roller", "pinned-moved"):
-        first_label, first = "clamped", "clamped"
-    last_label, last = ("free", "free") if free_tip else draw_wire_end(stream, dimension, END_MOVE * clearance, True)
-    vessel_first = draw_vessel_end(stream, dimension, END_MOVE * clearance)
-    vessel_last = draw_vessel_end(stream, dimension, END_MOVE * clearance)
-
     wire_bending = stream.logarithmic(*WIRE_BENDING)
     vessel_bending = stream.logarithmic(*VESSEL_BENDING)
     torsion = drawn(vessel_bending * 2.0 / 3.0 * stream.logarithmic(*TUBE_FACTOR))
     stretch = drawn(2.0 * vessel_bending / lumen.mean ** 2 * stream.logarithmic(*TUBE_FACTOR))
     anchoring = stream.logarithmic(*ANCHORING)
     tension = draw_tension(stream)
+
+    roller = not free_tip and tension <= anchoring * ROLLER_TISSUE
+    first_label, first = draw_wire_end(stream, dimension, END_MOVE * clearance, roller)
+    if free_tip and first_label in ("pinned", "roller", "pinned-moved"):
+        first_label, first = "clamped", "clamped"
+    last_label, last = ("free", "free") if free_tip else draw_wire_end(stream, dimension, END_MOVE * clearance, roller)
+    vessel_first = draw_vessel_end(stream, dimension, END_MOVE * clearance)
+    vessel_last = draw_vessel_end(stream, dimension, END_MOVE * clearance)
+
     coils = wire_bending / (2.0 * (lumen.largest - wire_radius) ** 2)
     # On a wire whose material slides only its ends are places, and those are held.
     load = stream.pick({"none": 0.5, "wire": 0.35, "vessel": 0.15} if free_tip else {"none": 0.75, "vessel": 0.25})
