@@ -16,6 +16,8 @@ constexpr double singular_distance = 1e-9;  // mm; below it the plain distance c
 constexpr double longest_step = 0.5;        // of a segment: a longer one could pass over a minimum
 constexpr int max_steps = 64;               // per segment; bisection alone needs 52
 constexpr int samples_per_segment = 4;      // of a global scan
+constexpr double near_end = 0.5;            // of a chord: a largest gap that stood nearer leaves it there
+constexpr double near_wall = 0.1;           // of the clearance: a chord that is farther away is looked at less closely
 
 double dot(const double a[3], const double b[3]) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -481,27 +483,39 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
   const double bend = high.slope - low.slope;
   const double end_sigma[2] = {low.closest.at.sigma(), high.closest.at.sigma()};
   const auto answer = [&](const Sample& sample, bool interior) {
-    return ChordExtremum{sample.t,
-                         interior,
-                         interior ? -std::fabs(bend) : std::max(bend, 0.0),
-                         {end_sigma[0], end_sigma[1]},
-                         sample.closest};
+    const double told = interior ? -std::fabs(bend) : std::max(bend, 0.0);
+    return ChordExtremum{sample.t, interior, told, {end_sigma[0], end_sigma[1]}, sample.closest};
   };
   if (low.closest.location == Location::window_edge) return answer(low, false);
   if (high.closest.location == Location::window_edge) return answer(high, false);
-  if (low.slope <= 0.0 && high.slope >= 0.0) {
-    return answer(sign * low.closest.gap >= sign * high.closest.gap ? low : high, false);
-  }
-  if (low.slope <= 0.0 || high.slope >= 0.0) {
-    // The same way at both ends: between them it may still rise and fall, as on a chord that is long for the wall's
-    // bends.
-    const Sample& end = high.slope >= 0.0 ? high : low;
-    const double t = steepest_against(sign * low.closest.gap, low.slope, sign * high.closest.gap, high.slope);
-    if (!(t > 0.0 && t < 1.0)) return answer(end, false);
-    const Sample between = at(margin + t * (1.0 - 2.0 * margin), end.closest.at.sigma());
-    if (between.closest.location == Location::window_edge || !(between.slope * end.slope < 0.0))
-      return answer(end, false);
-    (between.slope > 0.0 ? low : high) = between;
+  const auto height = [&](const Sample& sample) { return sign * sample.closest.gap; };
+  const auto usable = [](const Sample& sample) { return sample.closest.location != Location::window_edge; };
+  /// Narrows a stretch to one at whose ends h rises and falls, where there is such a one.
+  const auto rises_and_falls = [&](Sample& first, Sample& last) {
+    if (first.slope > 0.0 && last.slope < 0.0) return true;
+    if (!(first.slope * last.slope > 0.0)) return false;
+    const double length = last.t - first.t;
+    const double t = steepest_against(height(first), length * first.slope, height(last), length * last.slope);
+    if (!(t > 0.0 && t < 1.0)) return false;
+    const Sample between = at(first.t + t * length, first.closest.at.sigma());
+    if (!usable(between) || !(between.slope * first.slope < 0.0)) return false;
+    (between.slope > 0.0 ? first : last) = between;
+    return true;
+  };
+  if (!rises_and_falls(low, high)) {
+    const Sample& end = height(low) >= height(high) ? low : high;
+    const bool leaves_by_end = std::fabs(chord.t - end.t) < near_end;
+    const bool stands = chord.t > margin && chord.t < 1.0 - margin && !leaves_by_end;
+    const auto without = [&] { return answer(stands ? at(chord.t, start) : end, false); };
+    if (!(height(end) > -near_wall * end.closest.clearance)) return without();
+    // A chord that is long for the wall's bends may leave the wall from both ends and come back between.
+    Sample middle = at(0.5, low.closest.at.sigma()), first = low, last = high, other = middle;
+    const bool before = usable(middle) && rises_and_falls(first, middle);
+    const bool after = usable(other) && rises_and_falls(other, last);
+    if (!before && !after) return without();
+    const bool take_first = before && (!after || height(middle) + height(first) >= height(other) + height(last));
+    low = take_first ? first : other;
+    high = take_first ? middle : last;
   }
 
   // Newton's steps on the slope from the secant's, by bisection where they leave the bracket.
