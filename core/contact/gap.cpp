@@ -17,6 +17,7 @@ constexpr double longest_step = 0.5;        // of a segment: a longer one could 
 constexpr int max_steps = 64;               // per segment; bisection alone needs 52
 constexpr int samples_per_segment = 4;      // of a global scan
 constexpr double near_end = 0.5;            // of a chord: a largest gap that stood nearer leaves it there
+constexpr double bend_that_matters = 0.25;  // of h: with less the middle of a chord stands for its largest gap
 constexpr double near_wall = 0.1;           // of the clearance: a chord that is farther away is looked at less closely
 
 double dot(const double a[3], const double b[3]) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -483,7 +484,8 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
   const double bend = high.slope - low.slope;
   const double end_sigma[2] = {low.closest.at.sigma(), high.closest.at.sigma()};
   const auto answer = [&](const Sample& sample, bool interior) {
-    const double told = interior ? -std::fabs(bend) : std::max(bend, 0.0);
+    const bool matters = std::fabs(bend) > bend_that_matters * std::fabs(sample.closest.gap);
+    const double told = !matters ? 0.0 : (interior ? -std::fabs(bend) : std::max(bend, 0.0));
     return ChordExtremum{sample.t, interior, told, {end_sigma[0], end_sigma[1]}, sample.closest};
   };
   if (low.closest.location == Location::window_edge) return answer(low, false);

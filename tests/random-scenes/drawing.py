@@ -23,8 +23,9 @@ MESH_RATIO = (1.0 / 3.0, 3.0)
 FEWEST_WIRE_NODES = 8
 VESSEL_TURN = 0.5    # rad between neighbouring edges of State 1
 WIRE_TURN = 0.6
-WIRE_EDGE = 4.0      # of the smallest clearance: a longer chord does not see the bends that it is in
+WIRE_EDGE = 2.0      # of the smallest clearance: a longer chord does not see the bends that it is in
 TUBE_CURVATURE = 0.75
+TORTUOSITY = 2.5     # length over chord: a tension that pulls a wire straight shortens its vessel by as much
 RADIUS_SLOPE = 0.3
 REGULARITY = 0.2     # 1 − Rκ − R'² − RR'' at every node: the wall has a normal there
 ROOM_BETWEEN_LIMBS = 1.0
@@ -173,7 +174,7 @@ def draw_tube(stream, dimension):
         wire_radius = stream.uniform(*WIRE_RADIUS)
         if lumen.smallest < LUMEN[0] or lumen.largest > LUMEN[1] or lumen.steepest > RADIUS_SLOPE:
             continue
-        if curves.tube_curvature(shape, lumen) >= TUBE_CURVATURE:
+        if curves.tube_curvature(shape, lumen) >= TUBE_CURVATURE or shape.length > TORTUOSITY * shape.chord:
             continue
         if curves.limbs_apart(shape, lumen, ROOM_BETWEEN_LIMBS):
             return shape, lumen, wire_radius
@@ -304,6 +305,11 @@ def draw(seed, number, group="posed", continuation=False):
     if free_tip and first_label in ("pinned", "roller", "pinned-moved"):
         first_label, first = "clamped", "clamped"
     last_label, last = ("free", "free") if free_tip else draw_wire_end(stream, dimension, END_MOVE * clearance, roller)
+    # A start takes a turn along to an end that is free to follow, and so leaves the lumen.
+    if first_label == "clamped-turned" and last_label in ("free", "roller"):
+        first_label, first = "clamped", "clamped"
+    if last_label == "clamped-turned" and first_label == "roller":
+        last_label, last = "clamped", "clamped"
     vessel_first = draw_vessel_end(stream, dimension, END_MOVE * clearance)
     vessel_last = draw_vessel_end(stream, dimension, END_MOVE * clearance)
 
