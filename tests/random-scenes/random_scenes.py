@@ -140,9 +140,9 @@ def broken_promises(rows, share):
     out = [[what, row["solver"], row["scene"], details[:200]] for what, row, details in found]
     for solver, members in summary.grouped(rows, "solver").items():
         converged = len(summary.converged(members))
-        if share is not None and converged < math.floor(share * len(members)):
+        if share is not None and converged < share * len(members) - 1e-9:
             out.append(["too few converge", solver[0], "all",
-                        f"{converged} of {len(members)}; expected at least {math.floor(share * len(members))}"])
+                        f"{converged} of {len(members)}; expected a share of at least {share:g}"])
     return out
 
 
