@@ -16,6 +16,9 @@ constexpr double singular_distance = 1e-9;  // mm; below it the plain distance c
 constexpr double longest_step = 0.5;        // of a segment: a longer one could pass over a minimum
 constexpr int max_steps = 64;               // per segment; bisection alone needs 52
 constexpr int samples_per_segment = 4;      // of a global scan
+constexpr double near_end = 0.5;            // of a chord: a largest gap that stood nearer leaves it there
+constexpr double bend_that_matters = 0.25;  // of h: with less the middle of a chord stands for its largest gap
+constexpr double near_wall = 0.1;           // of the clearance: a chord that is farther away is looked at less closely
 
 double dot(const double a[3], const double b[3]) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -276,6 +279,17 @@ ChordDerivatives chord_derivatives(const Centerline& curve, const WirePoint& poi
   return {p.t, sigma_moves ? p.t_t - p.sigma_t * p.sigma_t / p.sigma_sigma : p.t_t};
 }
 
+/// Where on [0, 1] the cubic with these values and slopes, both of one sign, runs the other way the most; outside of
+/// ]0, 1[ where it runs one way.
+double steepest_against(double value_0, double slope_0, double value_1, double slope_1) noexcept {
+  const double rise = value_1 - value_0;
+  const double linear = 3.0 * rise - 2.0 * slope_0 - slope_1, square = slope_0 + slope_1 - 2.0 * rise;
+  if (square == 0.0) return -1.0;
+  const double t = -linear / (3.0 * square);
+  const double slope = slope_0 + t * (2.0 * linear + 3.0 * t * square);
+  return slope * (slope_0 + slope_1) < 0.0 ? t : -1.0;
+}
+
 /// weight·(φ_zz − φ_zη φ_ηη⁻¹ φ_ηz), packed. With d = Σ_a w_a z_a it is, by blocks of nodes a and b,
 ///   φ_zz = w_a w_b (2 F_r I + 4 F_rr d dᵀ),   φ_zη = 2 w_a (F_rr r_η + F_rc c_η) d + 2 F_r (w_{a,η} d + w_a d_η).
 template <int dim>
@@ -470,17 +484,45 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
   const double bend = high.slope - low.slope;
   const double end_sigma[2] = {low.closest.at.sigma(), high.closest.at.sigma()};
   const auto answer = [&](const Sample& sample, bool interior) {
-    return ChordExtremum{sample.t, interior, bend, {end_sigma[0], end_sigma[1]}, sample.closest};
+    const bool matters = std::fabs(bend) > bend_that_matters * std::fabs(sample.closest.gap);
+    const double told = !matters ? 0.0 : (interior ? -std::fabs(bend) : std::max(bend, 0.0));
+    return ChordExtremum{sample.t, interior, told, {end_sigma[0], end_sigma[1]}, sample.closest};
   };
   if (low.closest.location == Location::window_edge) return answer(low, false);
   if (high.closest.location == Location::window_edge) return answer(high, false);
-  if (low.slope <= 0.0 && high.slope >= 0.0) {
-    return answer(sign * low.closest.gap >= sign * high.closest.gap ? low : high, false);
+  const auto height = [&](const Sample& sample) { return sign * sample.closest.gap; };
+  const auto usable = [](const Sample& sample) { return sample.closest.location != Location::window_edge; };
+  /// Narrows a stretch to one at whose ends h rises and falls, where there is such a one.
+  const auto rises_and_falls = [&](Sample& first, Sample& last) {
+    if (first.slope > 0.0 && last.slope < 0.0) return true;
+    if (!(first.slope * last.slope > 0.0)) return false;
+    const double length = last.t - first.t;
+    const double t = steepest_against(height(first), length * first.slope, height(last), length * last.slope);
+    if (!(t > 0.0 && t < 1.0)) return false;
+    const Sample between = at(first.t + t * length, first.closest.at.sigma());
+    if (!usable(between) || !(between.slope * first.slope < 0.0)) return false;
+    (between.slope > 0.0 ? first : last) = between;
+    return true;
+  };
+  if (!rises_and_falls(low, high)) {
+    const Sample& end = height(low) >= height(high) ? low : high;
+    const bool leaves_by_end = std::fabs(chord.t - end.t) < near_end;
+    const bool stands = chord.t > margin && chord.t < 1.0 - margin && !leaves_by_end;
+    const auto without = [&] { return answer(stands ? at(chord.t, start) : end, false); };
+    if (!(height(end) > -near_wall * end.closest.clearance)) return without();
+    // A chord that is long for the wall's bends may leave the wall from both ends and come back between.
+    Sample middle = at(0.5, low.closest.at.sigma()), first = low, last = high, other = middle;
+    const bool before = usable(middle) && rises_and_falls(first, middle);
+    const bool after = usable(other) && rises_and_falls(other, last);
+    if (!before && !after) return without();
+    const bool take_first = before && (!after || height(middle) + height(first) >= height(other) + height(last));
+    low = take_first ? first : other;
+    high = take_first ? middle : last;
   }
-  if (low.slope <= 0.0 || high.slope >= 0.0) return answer(high.slope >= 0.0 ? high : low, false);
 
   // Newton's steps on the slope from the secant's, by bisection where they leave the bracket.
-  Sample here = at(low.slope / (low.slope - high.slope), low.closest.at.sigma());
+  const double secant = low.t + (high.t - low.t) * low.slope / (low.slope - high.slope);
+  Sample here = at(secant, low.closest.at.sigma());
   for (int i = 0; i < max_steps; ++i) {
     if (here.closest.location == Location::window_edge || std::isnan(here.slope)) break;
     if (here.slope == 0.0) break;

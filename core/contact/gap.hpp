@@ -89,15 +89,16 @@ struct WirePoint {
 struct ChordExtremum {
   double t = 0.0;
   bool interior = false;  ///< h_t = 0 there; otherwise at an end
-  double bend = 0.0;  ///< sign·h_t at the last end less that at the first: > 0 where the largest h is at an end, mm
+  double bend = 0.0;      ///< how much h_t changes from end to end, mm; < 0 with an extremum between them, > 0 without
   double end_sigma[2] = {};  ///< of the closest points of the chord's two ends
   ClosestPoint closest;
 };
 
-/// The largest (`sign` = 1) or least (−1) h along a chord between two nodes. Along a segment of a wire h − which is the
-/// distance from a curve that bends at most moderately − has at most one stationary point that matters; of two end
-/// maxima the larger one is taken. `start` is σ of the search at both ends. The location is `window_edge` where a
-/// closest point leaves the window. The ends are t = margin and 1 − margin.
+/// The largest (`sign` = 1) or least (−1) h along a chord between two nodes: a local maximum between the ends where
+/// there is one, by the slopes there or, where both have one sign, by the cubic through values and slopes; otherwise
+/// where the chord's own t is, so that h stays continuous where that maximum vanishes, or, with t at an end, the larger
+/// end. `start` is σ of the search at both ends. The location is `window_edge` where a closest point leaves
+/// the window. The ends are t = margin and 1 − margin.
 ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
                              double start, double margin = 0.0) noexcept;
 

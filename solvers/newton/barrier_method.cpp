@@ -27,8 +27,12 @@ constexpr double multiplier_spread = 1e10;  // of z s against μ
 constexpr int refinements = 3;
 // Relative residuals that no further refinement is spent on: of a step, and of a correction.
 constexpr double refined = 1e-7, fully_refined = 1e-13;
+// A step with a larger residual is none: then shifts of the Hessian, N/mm, growing by a factor.
+constexpr double unsolved = 0.5, first_mended = 1e-7, mended_growth = 100.0;
+constexpr int most_mended = 4;
 // Of the filter's line search.
 constexpr double slope_power = 2.3, violation_power = 1.1, armijo = 1e-4, small_violation = 1e-4;
+constexpr double negligible_violation = 1e-2;  // of the tolerance
 constexpr double shortest_step = 1e-8;
 constexpr int most_shortenings = 40;
 constexpr int most_shifts = 6;        // of the Hessian, after line searches that found nothing
@@ -203,8 +207,14 @@ bool BarrierMethod::find_direction(double least_shift, Status& failure) {
   values.hessian = w;
   values.jacobian = point_.jacobian;
   values.softness = softness_;
-  if (!inertia_.factor(point_.system(), values, least_shift, progress_.result())) return false;
-  solve_system(right_a_, refinements, refined, direction_.delta, direction_.rows);
+  // Where next to nothing has curvature along a curve (a straight wire without tension) rounding may leave factors of
+  // the right inertia that do not solve the system; a little curvature mends them.
+  double residual = infinity;
+  for (int more = 0; !(residual <= unsolved) && more <= most_mended; ++more) {
+    const double least = more == 0 ? least_shift : std::max(first_mended, mended_growth * inertia_.shift());
+    if (!inertia_.factor(point_.system(), values, std::max(least, least_shift), progress_.result())) return false;
+    residual = solve_system(right_a_, refinements, refined, direction_.delta, direction_.rows);
+  }
   for (std::size_t k = 0; k < sides_.size(); ++k) {
     const Side& side = sides_[k];
     const double rate = side.sign * point_.row_rate(side.index, direction_.delta);
@@ -219,10 +229,10 @@ bool BarrierMethod::find_direction(double least_shift, Status& failure) {
   return true;
 }
 
-void BarrierMethod::solve_system(Span<const double> right, int most_refinements, double enough, Span<double> delta,
-                                 Span<double> rows) {
+double BarrierMethod::solve_system(Span<const double> right, int most_refinements, double enough, Span<double> delta,
+                                   Span<double> rows) {
   const Stopwatch watch(progress_.result().factorization_seconds);
-  point_.system().solve(right, right_b_, {}, most_refinements, delta, rows, enough);
+  return point_.system().solve(right, right_b_, {}, most_refinements, delta, rows, enough);
 }
 
 BarrierMethod::Step BarrierMethod::longest_step() const noexcept {
@@ -271,6 +281,12 @@ BarrierMethod::Verdict BarrierMethod::try_step(const std::vector<double>& delta,
                             base_.violation <= small_violation * std::max(1.0, largest_start_violation_) &&
                             step * std::pow(-base_.slope, slope_power) > std::pow(base_.violation, violation_power);
   const double rounding = 10.0 * std::numeric_limits<double>::epsilon() * std::fabs(base_.objective);
+  // Rows that hold to rounding before and after have nothing to win or to lose: the objective alone decides.
+  const bool rows_hold =
+      std::max(base_.violation, new_violation) <= negligible_violation * progress_.limits().tolerance;
+  if (rows_hold && new_objective <= base_.objective + armijo * step * std::min(base_.slope, 0.0) + rounding) {
+    return Verdict::accepted;
+  }
   const bool enough = by_objective ? new_objective <= base_.objective + armijo * step * base_.slope + rounding
                                    : Filter::improves(new_violation, new_objective, base_.violation, base_.objective);
   if (enough && filter_.accepts(new_violation, new_objective)) {

@@ -70,8 +70,8 @@ class BarrierMethod {
   /// False: no shift gives usable factors, or the Hessian could not be evaluated, which `failure` says.
   bool find_direction(double least_shift, Status& failure);
   /// With the last factors and right_b_.
-  void solve_system(Span<const double> right, int most_refinements, double enough, Span<double> delta,
-                    Span<double> rows);
+  double solve_system(Span<const double> right, int most_refinements, double enough, Span<double> delta,
+                      Span<double> rows);
   Step longest_step() const noexcept;
   double slope() const noexcept;
   /// Finds an acceptable trial; its length or 0.

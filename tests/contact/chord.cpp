@@ -106,13 +106,84 @@ TEST_CASE("the extremum along a chord is that of dense samples") {
         CHECK(sign * found.closest.gap >= best - 1e-12);
         CHECK(sign * found.closest.gap <= best + 1e-4);
         CHECK(chord.gap(found.t) == doctest::Approx(found.closest.gap).epsilon(1e-12));
-        if (found.interior) CHECK(found.bend < 0.0);
+        if (found.interior) CHECK(found.bend <= 0.0);
         ++(found.interior ? interior : at_end);
       }
     }
   }
   CHECK(interior > 20);
   CHECK(at_end > 20);
+}
+
+/// A tube in the plane whose centerline is a wave of that length about the x axis, and a chord along its upper wall.
+Chord chord_along_wave(double wave_length, double shift, double tilt) {
+  constexpr double amplitude = 0.15, lumen = 3.0, from = -10.0, to = 30.0, begin = 6.0, length = 8.0;
+  constexpr int nodes = 81;
+  Chord out;
+  out.tube = tube(
+      [&](double x) -> std::vector<double> {
+        return {x, amplitude * std::sin(2.0 * M_PI * (x + shift) / wave_length)};
+      },
+      from, to, nodes, lumen);
+  out.radius[0] = out.radius[1] = 0.4;
+  out.ends = {begin, lumen - 0.4 - tilt, begin + length, lumen - 0.4 + tilt};
+  out.start = (begin - from) / (to - from) * (nodes - 1);
+  return out;
+}
+
+TEST_CASE("a largest gap between the ends of a chord is found where the slopes at both ends hide it") {
+  int same_way = 0, from_both = 0;
+  for (const double wave_length : {8.0, 6.5}) {
+    for (const double shift : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0}) {
+      for (const double tilt : {0.0, 0.05, 0.1, -0.05, -0.1}) {
+        const Chord chord = chord_along_wave(wave_length, shift, tilt);
+        constexpr int samples = 400;
+        double gap[samples + 1], best = -1e300;
+        int maxima = 0;
+        for (int k = 0; k <= samples; ++k) gap[k] = chord.gap(static_cast<double>(k) / samples);
+        for (int k = 1; k < samples; ++k) {
+          if (gap[k] <= gap[k - 1] || gap[k] < gap[k + 1]) continue;
+          ++maxima;
+          best = std::max(best, gap[k]);
+        }
+        const double first = gap[1] - gap[0], last = gap[samples] - gap[samples - 1];
+        if (maxima != 1 || (first > 0.0 && last < 0.0)) continue;
+        const double rise = best - std::min(gap[0], gap[samples]);
+        if (std::max(gap[0], gap[samples]) < -0.2 || rise < 1e-3) continue;
+        ++(first * last > 0.0 ? same_way : from_both);
+        CAPTURE(wave_length);
+        CAPTURE(tilt);
+        CAPTURE(shift);
+        const ChordExtremum found = chord.extremum();
+        CHECK(found.interior);
+        CHECK(found.closest.gap == doctest::Approx(best).epsilon(1e-4));
+      }
+    }
+  }
+  CHECK(same_way > 5);
+  CHECK(from_both > 0);
+}
+
+TEST_CASE("a row whose largest gap vanishes between the ends keeps its place, and one by an end goes there") {
+  std::mt19937 random(5);
+  int kept = 0, left = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const Chord chord = chord_near_wall(3, trial % 2 == 0 ? 0.8 : -0.8, 1.5 + 0.1 * trial, 0.8, random);
+    if (chord.extremum().interior) continue;
+    const bool first_is_larger = chord.gap(0.0) >= chord.gap(1.0);
+    for (const double t : {0.2, 0.8}) {
+      WirePoint standing = chord.point();
+      standing.t = t;
+      const ChordExtremum found = chord_extremum(chord.tube.view(spline), standing, chord.form, 1.0,
+                                                 whole(chord.tube.view(spline)), chord.start);
+      const bool nearer = first_is_larger == (t < 0.5);
+      CHECK(found.t == (nearer ? (first_is_larger ? 0.0 : 1.0) : t));
+      CHECK_FALSE(found.interior);
+      ++(nearer ? left : kept);
+    }
+  }
+  CHECK(kept > 10);
+  CHECK(left > 10);
 }
 
 TEST_CASE("gradient and Hessian of a chord's extreme gap agree with differences") {

@@ -13,6 +13,7 @@ import grid
 import grid_test
 import report
 import results
+import runner
 import scenes
 import summary
 
@@ -292,7 +293,7 @@ class Running(unittest.TestCase):
 
     def test_a_process_without_end_is_killed(self):
         self.command.write_text(f"#!{sys.executable}\nwhile True: pass\n")
-        with mock.patch.object(grid, "kill_after", lambda limit: 0.2):
+        with mock.patch.object(runner, "kill_after", lambda limit: 0.2):
             (made,) = self.rows(scenes.grid_a()[:1])
         self.assertEqual(made["status"], "killed")
 
