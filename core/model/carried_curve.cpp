@@ -16,7 +16,6 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double same_share = 1e-12;   // of a curve's material
-constexpr double same_place = 1e-9;    // mm along a vessel
 constexpr double small_shift = 0.25;   // of an edge: nodes that are nearer stand for the same material
 constexpr double merging_slope = 0.1;  // at which a tip that runs on comes to the centerline
 
@@ -250,15 +249,19 @@ class Carrying {
   }
 
   bool span_changed(const Curve& curve, const RecordedCurve& recorded) const {
-    return curve.along >= 0 && scene_.curves[at(curve.along)]->name == recorded.along &&
-           (std::fabs(curve.along_begin - recorded.along_begin) > same_place ||
-            std::fabs(curve.along_end - recorded.along_end) > same_place);
+    if (curve.along < 0 || scene_.curves[at(curve.along)]->name != recorded.along) return false;
+    // The length of a vessel, which a span may end at, changes a little with its mesh.
+    const double length = curve.along_end - curve.along_begin;
+    const double slack = small_shift * length / std::min(curve.view.nodes - 1, recorded.nodes() - 1);
+    return std::fabs(curve.along_begin - recorded.along_begin) > slack ||
+           std::fabs(curve.along_end - recorded.along_end) > slack;
   }
 
   void interpolate(const Curve& curve, const RecordedCurve& recorded, bool span, CarriedCurve& out) {
     const int d = curve.view.dimension;
     const MaterialCurve material(recorded);
-    std::vector<double> share = out.same_mesh ? recorded.share : material_shares(curve);
+    std::vector<double>& share = out.share;
+    share = out.same_mesh ? recorded.share : material_shares(curve);
     if (span) {
       for (double& s : share) {
         const double arc = curve.along_begin + s * (curve.along_end - curve.along_begin);

@@ -110,6 +110,7 @@ struct Scene {
 struct CarriedCurve {
   bool recorded = false;            ///< the state has a curve of this name …
   bool same_mesh = false;           ///< … whose nodes stand for the same material: numbers may be taken as they stand
+  std::vector<double> share;        ///< nodes: where in the recorded material each lies; beyond 0 … 1 outside of it
   std::vector<double> points;       ///< its shape here, nodes × dimension, mm; empty: not known
   std::vector<double> orientation;  ///< edges × 4: quaternions, first axis along the edge; empty: not known
   std::string told;                 ///< what is interpolated: "from 24 nodes to 30"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/curve/arc_length.hpp"
 #include "core/model/carried_curve.hpp"
 #include "core/model/manifold.hpp"
 
@@ -251,43 +252,127 @@ void hold_ends(const Scene& scene, std::vector<double>& q) {
   }
 }
 
+namespace {
+
+/// A group of rows along a curve, as far as it can be told where its rows stand: place after place from the curve's
+/// first end to its last one, with as many rows each.
+struct RowsAlong {
+  int curve = -1;
+  int each = 1;          ///< rows of one place
+  bool on_edges = true;  ///< closure rows; else between the ends, on nodes or more densely
+};
+
+RowsAlong rows_along(const Scene& scene, const RowOrigin& group) {
+  RowsAlong out;
+  out.curve = group.curve;
+  if (group.constraint < 0) {
+    const SiteDeclaration* site = scene.curves[at(group.curve)]->site(Site::closure);
+    if (site != nullptr) out.each = site->values;
+    return out;
+  }
+  const ConstraintUse& use = scene.constraints[at(group.constraint)];
+  out.on_edges = false;
+  if (use.scene.on.empty()) return out;
+  out.curve = use.scene.on.front().index;
+  const auto first_place = [&](int row) { return use.rows.places[at(use.rows.place_begin[at(row)])]; };
+  const auto same = [](const Place& a, const Place& b) {
+    return a.curve == b.curve && a.site == b.site && a.index == b.index;
+  };
+  for (int row = 0; row < use.rows.rows; ++row) {
+    if (use.rows.place_begin[at(row)] == use.rows.place_begin[at(row + 1)]) return out;
+  }
+  while (out.each < use.rows.rows && same(first_place(out.each), first_place(0))) ++out.each;
+  return out;
+}
+
+/// The shares of material at which `places` places stand on a curve whose nodes lie at `node_share`.
+std::vector<double> place_shares(int places, bool on_edges, const std::vector<double>& node_share) {
+  std::vector<double> index(node_share.size()), out;
+  for (std::size_t i = 0; i < index.size(); ++i) index[i] = static_cast<double>(i);
+  for (int i = 0; i < places; ++i) {
+    const double part = on_edges ? (i + 0.5) / places : (i + 1.0) / (places + 1.0);
+    out.push_back(interpolate_linearly(index, node_share, part * index.back()));
+  }
+  return out;
+}
+
+/// How much of the material each of these places stands for.
+std::vector<double> place_weights(const std::vector<double>& share, const std::vector<double>& node_share) {
+  std::vector<double> out;
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    const double before = i > 0 ? share[i - 1] : node_share.front();
+    const double after = i + 1 < share.size() ? share[i + 1] : node_share.back();
+    out.push_back(0.5 * (after - before));
+  }
+  return out;
+}
+
+/// Multipliers of rows on another mesh: of closure rows, which are forces within the curve, linear in the material; of
+/// others, which are forces on what their place stands for, as a density. 0 outside of what was recorded.
+std::vector<double> interpolated_multipliers(const std::vector<double>& recorded, const std::vector<double>& before,
+                                             const std::vector<double>& now, int count, const RowsAlong& rows) {
+  const int places_before = static_cast<int>(recorded.size()) / rows.each, places = count / rows.each;
+  const std::vector<double> from = place_shares(places_before, rows.on_edges, before);
+  const std::vector<double> to = place_shares(places, rows.on_edges, now);
+  const std::vector<double> weight_from = place_weights(from, before), weight_to = place_weights(to, now);
+  std::vector<double> out(at(count), 0.0), density(from.size());
+  for (int k = 0; k < rows.each; ++k) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      density[i] = recorded[i * at(rows.each) + at(k)] / (rows.on_edges ? 1.0 : weight_from[i]);
+    }
+    for (std::size_t i = 0; i < to.size(); ++i) {
+      if (to[i] < 0.0 || to[i] > 1.0) continue;
+      out[i * at(rows.each) + at(k)] =
+          interpolate_linearly(from, density, to[i]) * (rows.on_edges ? 1.0 : weight_to[i]);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
 std::vector<double> carried_multipliers(const Scene& scene, const std::vector<RowOrigin>& rows,
                                         const CarriedState& carried, const CarriedCurves& shapes,
                                         std::vector<std::string>& warnings) {
   const std::string& name = carried.name;
   const RecordedState& state = *carried.state;
-  // The curve that rows stand on: of a constraint the first one that it names.
-  const auto on_other_mesh = [&](const RowOrigin& group) {
-    int curve = group.curve;
-    if (group.constraint >= 0) {
-      const ConstraintUse& use = scene.constraints[at(group.constraint)];
-      curve = use.scene.on.empty() ? -1 : use.scene.on.front().index;
-    }
-    return curve >= 0 && !shapes.curves[at(curve)].same_mesh;
-  };
   std::vector<double> out;
-  std::vector<std::string> other_mesh;
+  std::vector<std::string> without;
   for (const RowOrigin& group : rows) {
     const NamedNumbers* numbers = find(state.multipliers, group.name);
-    const bool other = on_other_mesh(group);
-    if (!other && numbers != nullptr && numbers->values.size() == at(group.count)) {
+    const RowsAlong along = rows_along(scene, group);
+    const bool other_mesh = along.curve >= 0 && !shapes.curves[at(along.curve)].same_mesh;
+    if (!other_mesh && numbers != nullptr && numbers->values.size() == at(group.count)) {
       out.insert(out.end(), numbers->values.begin(), numbers->values.end());
       continue;
     }
-    out.resize(out.size() + at(group.count), 0.0);
-    if (other) {
-      other_mesh.push_back("'" + group.name + "'");
+    if (!other_mesh) {
+      out.resize(out.size() + at(group.count), 0.0);
+      warnings.push_back(
+          name + " has " +
+          (numbers == nullptr ? "no multipliers" : std::to_string(numbers->values.size()) + " multipliers") + " of '" +
+          group.name + "', which has " + std::to_string(group.count) +
+          " rows here: its state is taken, and these multipliers start at 0");
       continue;
     }
-    warnings.push_back(
-        name + " has " +
-        (numbers == nullptr ? "no multipliers" : std::to_string(numbers->values.size()) + " multipliers") + " of '" +
-        group.name + "', which has " + std::to_string(group.count) +
-        " rows here: its state is taken, and these multipliers start at 0");
+    const Curve& curve = *scene.curves[at(along.curve)];
+    const CarriedCurve& shape = shapes.curves[at(along.curve)];
+    const RecordedCurve* recorded = state.find(curve.name);
+    const bool same_rows = numbers != nullptr && recorded != nullptr && !shape.share.empty() &&
+                           !numbers->values.empty() && numbers->values.size() % at(along.each) == 0 &&
+                           (!along.on_edges || recorded->kinematics == curve.kinematics_name);
+    if (same_rows) {
+      const std::vector<double> made =
+          interpolated_multipliers(numbers->values, recorded->share, shape.share, group.count, along);
+      out.insert(out.end(), made.begin(), made.end());
+    } else {
+      out.resize(out.size() + at(group.count), 0.0);
+      without.push_back("'" + group.name + "'");
+    }
   }
-  if (!other_mesh.empty()) {
-    warnings.push_back("multipliers of rows on curves of another mesh than in " + name +
-                       " start at 0: " + joined(other_mesh, ", "));
+  if (!without.empty()) {
+    warnings.push_back("multipliers of rows that " + name +
+                       " does not have, or on another mesh, start at 0: " + joined(without, ", "));
   }
   for (const NamedNumbers& numbers : state.multipliers) {
     const bool known =

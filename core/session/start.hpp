@@ -36,8 +36,9 @@ std::vector<double> carried_coordinates(const Scene& scene, const CarriedState& 
 /// Puts what the scene holds where its own start has it.
 void hold_ends(const Scene& scene, std::vector<double>& q);
 
-/// The multipliers of a carried state for these rows. Those of a group of another count are zero, with a warning; those
-/// of curves on another mesh are zero, which one warning says.
+/// The multipliers of a carried state for these rows. Those of rows on a curve of another mesh are interpolated by the
+/// material that they stand at, rows being taken as evenly spread over nodes; those of a group of another count on the
+/// same mesh, or of another kinematics, are zero, with a warning.
 std::vector<double> carried_multipliers(const Scene& scene, const std::vector<RowOrigin>& rows,
                                         const CarriedState& carried, const CarriedCurves& shapes,
                                         std::vector<std::string>& warnings);
