@@ -19,9 +19,9 @@ std::string variable(const char* name) {
   return value;
 }
 
-std::unique_ptr<Session> prepared(const CompositionRequest& request) {
+std::unique_ptr<Session> prepared(const CompositionRequest& request, const CarriedState* carried = nullptr) {
   Refusal refusal;
-  auto session = prepare(request, plugin_host(), refusal);
+  auto session = prepare(request, plugin_host(), refusal, carried);
   REQUIRE_MESSAGE(session != nullptr, refusal_text(refusal));
   return session;
 }
@@ -80,19 +80,19 @@ std::string refusal_text(const Refusal& refusal) {
 
 std::unique_ptr<Session> session_of(const SmallScene& scene) { return session_of_text(scene.text()); }
 
-std::unique_ptr<Session> session_of_text(const std::string& text) {
+std::unique_ptr<Session> session_of_text(const std::string& text, const CarriedState* carried) {
   const TemporaryFile file(text);
   CompositionRequest request;
   request.file = file.path();
-  return prepared(request);
+  return prepared(request, carried);
 }
 
-std::string refusal_of(const std::string& text) {
+std::string refusal_of(const std::string& text, const CarriedState* carried) {
   const TemporaryFile file(text);
   CompositionRequest request;
   request.file = file.path();
   Refusal refusal;
-  REQUIRE(prepare(request, plugin_host(), refusal) == nullptr);
+  REQUIRE(prepare(request, plugin_host(), refusal, carried) == nullptr);
   return refusal_text(refusal);
 }
 

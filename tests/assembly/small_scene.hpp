@@ -38,9 +38,9 @@ std::string edited(std::string text, const std::string& word, const std::string&
 
 /// Prepares a composition that has to be right, with a window that no row leaves.
 std::unique_ptr<Session> session_of(const SmallScene& scene);
-std::unique_ptr<Session> session_of_text(const std::string& text);
+std::unique_ptr<Session> session_of_text(const std::string& text, const CarriedState* carried = nullptr);
 /// What is said of a composition that has to be wrong.
-std::string refusal_of(const std::string& text);
+std::string refusal_of(const std::string& text, const CarriedState* carried = nullptr);
 /// The same for a file of the project's `scenes` folder.
 std::unique_ptr<Session> session_of_file(const std::string& name, const std::vector<Override>& overrides = {});
 

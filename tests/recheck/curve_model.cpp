@@ -66,7 +66,7 @@ double worse(double a, double b) { return !(b <= a) ? b : a; }
 CurveModel::CurveModel(const Curve& curve, std::vector<Unknown>& unknowns) : curve_(&curve) {
   arc_.push_back(0.0);
   for (int i = 0; i < curve.edges(); ++i) {
-    arc_.push_back(arc_.back() + norm(curve.reference[index(i + 1)] - curve.reference[index(i)]));
+    arc_.push_back(arc_.back() + norm(curve.state1[index(i + 1)] - curve.state1[index(i)]));
   }
   find_reference_orientations();
   add_stations();
@@ -117,7 +117,8 @@ void CurveModel::find_reference_orientations() {
   for (int e = 0; e < 2; ++e) {
     if (curve_->held_tangent(e) < 0) continue;
     const Side<double>& end_edge = reference_[index(e == 0 ? 0 : curve_->edges() - 1)];
-    reference_.push_back(next_to(end_edge, curve_->end[e].tangent, plane));
+    const Point& tangent = curve_->later_rest ? curve_->rest_tangent[e] : curve_->end[e].tangent;
+    reference_.push_back(next_to(end_edge, tangent, plane));
   }
 }
 
@@ -137,6 +138,11 @@ void CurveModel::add_stations() {
   }
 }
 
+double CurveModel::reference_length(int edge) const {
+  if (!curve_->later_rest) return arc_[index(edge + 1)] - arc_[index(edge)];
+  return norm(curve_->reference[index(edge + 1)] - curve_->reference[index(edge)]);
+}
+
 double CurveModel::held_length() const {
   double sum = 0.0;
   for (int i = 0; i < curve_->edges(); ++i) sum += curve_->edge_held(i) ? reference_length(i) : 0.0;
@@ -144,8 +150,8 @@ double CurveModel::held_length() const {
 }
 
 double CurveModel::end_distance() const {
-  const Point first = curve_->reference.front() + curve_->end[0].move;
-  return norm(curve_->reference.back() + curve_->end[1].move - first);
+  const Point first = curve_->state1.front() + curve_->end[0].move;
+  return norm(curve_->state1.back() + curve_->end[1].move - first);
 }
 
 double CurveModel::current_length(int edge) const {
@@ -242,7 +248,7 @@ Side<double> CurveModel::expected_held(int e) const {
 double CurveModel::held_error() const {
   double error = 0.0;
   for (int i = 0; i < curve_->nodes; ++i) {
-    Point moved = curve_->reference[index(i)];
+    Point moved = curve_->rigid ? curve_->reference[index(i)] : curve_->state1[index(i)];
     if (i <= 1 && curve_->position_held(i, 0) + curve_->position_held(i, 1) + curve_->position_held(i, 2) > 0) {
       moved = moved + curve_->end[0].move;
     } else if (i >= curve_->nodes - 2) {
@@ -256,7 +262,13 @@ double CurveModel::held_error() const {
   for (int e = 0; e < 2; ++e) {
     const int held = curve_->held_tangent(e);
     if (held < 0) continue;
-    const Side<double> found = held_side(held), expected = expected_held(e);
+    const Side<double> found = held_side(held);
+    if (curve_->later_rest) {
+      // Frames are counted anew from that state, and so are whole turns: what is left is the direction.
+      error = worse(error, largest(found.tangent - turned(curve_->end[e].turn, curve_->end[e].tangent)));
+      continue;
+    }
+    const Side<double> expected = expected_held(e);
     if (curve_->dimension == 2) {
       error = worse(error, std::abs(found.angle - expected.angle));
     } else {

@@ -29,7 +29,7 @@ struct Side {
 /// The rotation between two orientations: edges 0 … n − 2, then the held tangents.
 struct Station {
   int earlier = 0, later = 0;
-  double reference_length = 0.0;  ///< mm of State 1 material that it is spread over
+  double reference_length = 0.0;  ///< mm of material of the rest state that it is spread over
   double arc = 0.0;               ///< mm of State 1
 };
 
@@ -42,8 +42,8 @@ class CurveModel {
   const Curve& curve() const { return *curve_; }
   const std::vector<Station>& stations() const { return stations_; }
   const std::vector<double>& arc() const { return arc_; }  ///< nodes: State 1's polyline, mm
-  double reference_length(int edge) const { return arc_[index(edge + 1)] - arc_[index(edge)]; }
-  double held_length() const;             ///< of the held edges, mm
+  double reference_length(int edge) const;                 ///< of the rest state, mm
+  double held_length() const;                              ///< of the held edges, mm
   double end_distance() const;            ///< of the end nodes in State 1 with their prescribed moves, mm
   double current_length(int edge) const;  ///< |e|, mm
 

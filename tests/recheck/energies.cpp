@@ -107,7 +107,7 @@ void vessel_strain(const Json& term, const CurveModel& model, Sum& sum) {
   }
   for (int i = 0; i < model.curve().edges(); ++i) {
     const double length = model.reference_length(i);
-    const double stiffness = stretch(model.arc()[at(i)] + 0.5 * length);
+    const double stiffness = stretch(0.5 * (model.arc()[at(i)] + model.arc()[at(i + 1)]));
     if (stiffness == 0.0) continue;
     sum.add([&](Tape& tape) {
       const Variable strain = model.edge_length(tape, i) / length - 1.0;
@@ -162,7 +162,7 @@ LoadPlace load_place(const Json& where, const CurveModel& model) {
   const double arc = number_of(where);
   const auto next = std::upper_bound(model.arc().begin() + 1, model.arc().end() - 1, arc);
   const int edge = static_cast<int>(next - model.arc().begin()) - 1;
-  return {edge, (arc - model.arc()[at(edge)]) / model.reference_length(edge)};
+  return {edge, (arc - model.arc()[at(edge)]) / (model.arc()[at(edge + 1)] - model.arc()[at(edge)])};
 }
 
 /// −F·u, shared between two nodes like a weight on a lever.

@@ -142,8 +142,11 @@ void read_ends(const Json& entry, Curve& curve) {
   if (!entry.contains("reference_tangents")) {
     fail("curve '" + curve.name + "' has no 'reference_tangents': written by an older version; solve it again");
   }
-  const std::vector<Point> tangents = points_of_rows(entry["reference_tangents"], curve.dimension);
+  const char* of_state1 = curve.later_rest ? "state_1_tangents" : "reference_tangents";
+  const std::vector<Point> tangents = points_of_rows(entry.at(of_state1), curve.dimension);
+  const std::vector<Point> of_rest = points_of_rows(entry["reference_tangents"], curve.dimension);
   for (int e = 0; e < 2; ++e) {
+    curve.rest_tangent[e] = of_rest.at(at(e));
     curve.end[e] = read_end(curve.description.at("ends").at(at(e)), tangents.at(at(e)), curve.dimension);
   }
 }
@@ -168,6 +171,9 @@ Curve read_curve(const Json& composition, const Json& entry, int dimension) {
   curve.edge_frames = kinematics == "edge-frames";
   curve.rigid = curve.description.value("rigid", false);
   curve.reference = points_of_rows(entry.at("reference_points"), dimension);
+  curve.later_rest = entry.contains("state_1_points") && !entry["state_1_points"].is_null();
+  curve.state1 = curve.later_rest ? points_of_rows(entry["state_1_points"], dimension) : curve.reference;
+  if (curve.state1.size() != curve.reference.size()) fail("'" + curve.name + "' has another mesh in State 1");
   curve.points = points_of_rows(entry.at("points"), dimension);
   curve.nodes = static_cast<int>(curve.reference.size());
   if (curve.nodes < 3) fail("curve '" + curve.name + "' has fewer than three nodes");

@@ -40,10 +40,13 @@ struct Curve {
   Orientation orientation = Orientation::angle;
   int dimension = 3, nodes = 0;
   End end[2];
-  std::vector<Point> reference, points;  ///< nodes: State 1; what `curves` says of State 2, mm
-  std::vector<double> radius;            ///< nodes, mm; empty where unknown
-  std::vector<double> share;             ///< edges: f_i of a sliding wire, 0 on held edges
-  Json description;                      ///< its table in the composition
+  std::vector<Point> reference, points;  ///< nodes: the rest state; what `curves` says of State 2, mm
+  std::vector<Point> state1;             ///< nodes: State 1, mm: `reference` but where the rest state is a later one
+  bool later_rest = false;
+  Point rest_tangent[2];       ///< what a clamped end holds in a later rest state
+  std::vector<double> radius;  ///< nodes, mm; empty where unknown
+  std::vector<double> share;   ///< edges: f_i of a sliding wire, 0 on held edges
+  Json description;            ///< its table in the composition
 
   std::vector<Point> position;       ///< nodes: state
   std::vector<double> angle;         ///< edges: in the plane, or the twist of `nodes` with frames

@@ -276,7 +276,7 @@ void add_end_rows(const CurveModel& model, RowWork& work) {
   std::size_t row = 0;
   for (int e = 0; e < 2; ++e) {
     const int node = e == 0 ? 0 : curve.nodes - 1;
-    const Point held = curve.reference[at(node)] + curve.end[e].move;
+    const Point held = curve.state1[at(node)] + curve.end[e].move;
     for (const Point& axis : curve.end[e].row_axes) {
       work.tape.clear();
       add_equality(dot(model.node(work.tape, node) - held, axis), lambda[row++], group, work);
