@@ -112,17 +112,29 @@ class Way {
 
   Vector3 point(double share) const { return curve_.point(share); }
 
-  /// Where a curve that ends at `tip`, near this share of the way, comes to within `distance` mm, along the way for
-  /// `sign` 1 and back for −1. Its offset from the way turns with the way and goes to 0.
-  Vector3 beyond(const Vector3& tip, double near, double sign, double distance) const {
+  /// Where a curve that ends at `tip`, near this share of the way, comes to within these `lengths` of its own (mm,
+  /// increasing), along the way for `sign` 1 and back for −1. Its offset from the way turns with the way and goes to 0.
+  std::vector<Vector3> beyond(const Vector3& tip, double near, double sign, const std::vector<double>& lengths) const {
     const double begin = nearest_arc(tip, near);
-    const double share = interpolate_linearly(arc_, curve_.share(), begin);
-    const Vector3 offset = curve_.frame(share).inverse() * (tip - at_arc(begin));
+    const Vector3 offset = frame_at(begin).inverse() * (tip - at_arc(begin));
     const double merged = norm(offset) / merging_slope;
-    const double left = distance < merged ? 1.0 - distance / merged : 0.0;
-    const double to = begin + sign * distance;
-    const lie::Rotation frame = curve_.frame(interpolate_linearly(arc_, curve_.share(), to));
-    return at_arc(to) + left * left * (3.0 - 2.0 * left) * (frame * offset);
+    const auto place = [&](double way) {
+      const double left = way < merged ? 1.0 - way / merged : 0.0;
+      const double to = begin + sign * way;
+      return at_arc(to) + left * left * (3.0 - 2.0 * left) * (frame_at(to) * offset);
+    };
+    // An offset curve is longer than its way on the outside of a bend: lengths are measured.
+    const double step = arc_.back() / (4.0 * static_cast<double>(arc_.size() - 1));
+    std::vector<double> way{0.0}, length{0.0};
+    for (Vector3 last = place(0.0); length.back() < lengths.back();) {
+      way.push_back(way.back() + step);
+      const Vector3 next = place(way.back());
+      length.push_back(length.back() + std::max(norm(next - last), 0.1 * step));
+      last = next;
+    }
+    std::vector<Vector3> out;
+    for (const double one : lengths) out.push_back(place(interpolate_linearly(length, way, one)));
+    return out;
   }
 
  private:
@@ -131,6 +143,8 @@ class Way {
     for (std::size_t i = 0; i < quaternions.size(); i += 4) out.push_back(lie::Rotation::load(quaternions.data() + i));
     return out;
   }
+
+  lie::Rotation frame_at(double arc) const { return curve_.frame(interpolate_linearly(arc_, curve_.share(), arc)); }
 
   Vector3 at_arc(double arc) const {
     const int last = static_cast<int>(arc_.size()) - 1;
@@ -283,15 +297,23 @@ class Carrying {
     }
     const double vessel_length = way ? scene_.curves[at(curve.along)]->arc.back() : 1.0;
     const double span_length = recorded.along_end - recorded.along_begin;
+    std::vector<double> before, after;  // lengths beyond the recorded ends
     for (const double s : share) {
-      if (s < 0.0) {
-        append(way->beyond(material.point(0.0), recorded.along_begin / vessel_length, -1.0, -s * span_length), d,
-               out.points);
-      } else if (s > 1.0) {
-        append(way->beyond(material.point(1.0), recorded.along_end / vessel_length, 1.0, (s - 1.0) * span_length), d,
-               out.points);
-      } else {
-        append(material.point(s), d, out.points);
+      if (s < 0.0) before.insert(before.begin(), -s * span_length);
+      if (s > 1.0) after.push_back((s - 1.0) * span_length);
+    }
+    if (!before.empty()) {
+      std::vector<Vector3> points =
+          way->beyond(material.point(0.0), recorded.along_begin / vessel_length, -1.0, before);
+      std::reverse(points.begin(), points.end());
+      for (const Vector3& point : points) append(point, d, out.points);
+    }
+    for (const double s : share) {
+      if (s >= 0.0 && s <= 1.0) append(material.point(s), d, out.points);
+    }
+    if (!after.empty()) {
+      for (const Vector3& point : way->beyond(material.point(1.0), recorded.along_end / vessel_length, 1.0, after)) {
+        append(point, d, out.points);
       }
     }
     if (!edges_of(curve, out)) return;

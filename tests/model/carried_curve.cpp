@@ -190,7 +190,8 @@ TEST_CASE("a finer scene takes the shape of a coarser one: places, directions an
         before += lie::log(lie::Rotation::load(recorded.frames.data() + 4 * (i - 1)).inverse() *
                            lie::Rotation::load(recorded.frames.data() + 4 * i))[0];
       }
-      CHECK(std::fabs(twist - before) < 2e-3);
+      if (dimension == 3 && curve->name == "vessel") REQUIRE(std::fabs(before) > 0.02);
+      CHECK(std::fabs(twist - before) < 5e-3);
       // Where the solve starts is that shape, but for what ends hold.
       const double* q = session->start.q.data() + curve->coordinate_begin;
       for (int k = dimension; k < (curve->view.nodes - 1) * dimension; ++k) CHECK(q[k] == shape.points[at(k)]);
@@ -237,7 +238,7 @@ TEST_CASE("a wire that is pushed in further keeps its place, and its tip runs on
         longest = std::fmax(longest, edge), shortest = std::fmin(shortest, edge);
       }
       CHECK(recorded < 0.02);
-      CHECK(beyond < 3.0);  // within the lumen
+      CHECK(beyond < 3.6);  // within the lumen
       REQUIRE(shortest > 0.0);
       CHECK(longest / shortest < 1.1);
       CHECK(longest == doctest::Approx(end / 20.0).epsilon(0.05));
@@ -276,7 +277,7 @@ TEST_CASE("a wire that is exchanged starts along the vessel as it was recorded")
   const std::vector<double>& vessel = state.state->find("vessel")->points;
   double moved = 0.0;
   for (int i = 1; i + 1 < wire.view.nodes; ++i) {
-    CHECK(distance_to(node(points, 2, i), vessel, 2) < 0.05);
+    CHECK(distance_to(node(points, 2, i), vessel, 2) < 0.1);
     moved = std::fmax(moved, distance_to(node(points, 2, i), wire.start, 2));
   }
   REQUIRE(moved > 0.1);  // the vessel is not where State 1 has it
