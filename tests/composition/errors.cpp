@@ -164,12 +164,14 @@ TEST_CASE("a start names a result document that can be read") {
       errors("[start]\nfrom = 3\n") ==
       Texts{"scene.toml:29:8: 'from' of [start] is whole number 3; expected text, the path of a result document; write "
             "from = \"result.json\""});
-  CHECK(
-      errors("[start]\nfrom = \"none.json\"\nrest = \"previous\"\n") ==
-      Texts{
-          "scene.toml:29:8: cannot read the start 'none.json' (No such file or directory); expected " + document +
-              "paths are relative to the file that they stand in",
-          "scene.toml:30:1: key 'rest' in [start] is not available in this version; expected one of: from; remove it"});
+  CHECK(errors("[start]\nfrom = \"none.json\"\nrest = \"before\"\n") ==
+        Texts{"scene.toml:29:8: cannot read the start 'none.json' (No such file or directory); expected " + document +
+                  "paths are relative to the file that they stand in",
+              "scene.toml:30:8: 'rest' of [start] is text \"before\"; expected one of: state-1, previous; write rest = "
+              "\"previous\" where the state that it starts from is without stress in the vessels"});
+  CHECK(errors("[start]\nrest = \"previous\"\n") ==
+        Texts{"scene.toml:28:1: [start] has no 'from'; expected a result document to start from; add from = "
+              "\"result.json\", or remove the table"});
   CHECK(bench.errors(test::small_scene, {{"start.from", "none.json"}}) ==
         Texts{"--set start.from=none.json: cannot read the start 'none.json' (No such file or directory); expected " +
               document + "paths of --set are relative to the working directory"});
@@ -182,7 +184,11 @@ TEST_CASE("a start names a result document that can be read") {
   CHECK(composition.start.state->fields[0].manifold == "R");
   CHECK(composition.start.state->fields[0].values == std::vector<double>{1.0, 2.0});
   CHECK(composition.input_files.back() == composition.start.from);
-  CHECK(composition.resolved_json.find("\"start\":{\"from\":\"" + composition.start.from) != std::string::npos);
+  CHECK(composition.resolved_json.find("\"start\":{\"from\":\"" + composition.start.from +
+                                       "\",\"rest\":\"state-1\"}") != std::string::npos);
+  CHECK_FALSE(composition.start.rest_is_previous);
+  CHECK(bench.loaded(std::string(test::small_scene) + "[start]\nfrom = \"results/a.json\"\nrest = \"previous\"\n")
+            .start.rest_is_previous);
 }
 
 TEST_CASE("a wire with a geometry of its own takes that geometry's nodes, and needs no vessel") {

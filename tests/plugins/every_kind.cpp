@@ -128,6 +128,13 @@ TEST_CASE("kinematics through the host") {
   const std::vector<double> middle = {1.5};
   REQUIRE(nodes->sample(bent.position, middle, sample).ok());
   CHECK(sample.position == std::vector<double>{1.5, -0.125});
+
+  std::vector<double> adopted(6);
+  const std::vector<double> orientation(8, 0.0);
+  REQUIRE(nodes->adopt({bent.reference, orientation}, adopted).ok());
+  CHECK(adopted == bent.reference);
+  adopted.resize(4);
+  CHECK(nodes->adopt({bent.reference, orientation}, adopted).text == "another number of nodes");
 }
 
 TEST_CASE("energy through the host") {
@@ -167,6 +174,12 @@ TEST_CASE("constraint through the host") {
   REQUIRE(floor->declare(scene, rows).ok());
   REQUIRE(rows.rows == 3);
   CHECK(rows.places[1].curve == 4);
+  CHECK(rows.lower == std::vector<double>{0.0, 0.0, 0.0});
+  const std::vector<double> before = {0.0, 0.5, 1.0, -0.75, 2.0, 0.0};
+  scene.on.front().previous = before.data();
+  RowDeclaration after;
+  REQUIRE(floor->declare(scene, after).ok());
+  CHECK(after.lower == std::vector<double>{0.0, -0.75, 0.0});
 
   const NodeTable table(bent);
   std::vector<double> residual(3), jacobian(6);

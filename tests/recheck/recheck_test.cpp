@@ -153,6 +153,39 @@ TEST_CASE("ends that are moved and turned hold") {
   check_holds(solved("helical-iliac-full", by_nodes({twisted})));
 }
 
+TEST_CASE("documents of a later rest state hold, and one that is moved does not") {
+  const Folder folder;
+  const std::string clamps =
+      "vessel.iliac.ends=[{ type = \"clamped\", turn = 0.1 }, { type = \"clamped\", move = [1, 2], turn = \"10 deg\" "
+      "}]";
+  const std::string in_space =
+      "vessel.iliac.ends=[\"clamped\", { type = \"clamped\", turn = [0.1, -0.2, 0.3], move = [1, 2, 3], axes = \"end\" "
+      "}]";
+  const std::string load = "energy.anchoring.stiffness={ table = [[0, \"0.01 N/mm^2\"], [150, \"0.03 N/mm^2\"]] }";
+  for (const bool nodes : {false, true}) {
+    for (const bool space : {false, true}) {
+      const std::string scene = space ? "helical-iliac-full" : "planar-iliac-smooth";
+      std::vector<std::string> overrides = {"vessel.iliac.geometry.nodes=40", space ? in_space : clamps};
+      if (nodes) overrides = by_nodes(overrides);
+      write(solved(scene, overrides), folder.file("first.json"));
+      overrides.push_back("start.from=" + folder.file("first.json"));
+      overrides.emplace_back("start.rest=previous");
+      if (!space) overrides.push_back(load);
+      const Json same = solved(scene, overrides);
+      check_holds(same);
+      overrides.front() = "vessel.iliac.geometry.nodes=50";
+      overrides.emplace_back("vessel.iliac.ends.last=\"clamped\"");
+      check_holds(solved(scene, overrides));
+      Json moved = same;
+      add_to(moved["curves"][0]["reference_points"][17][1], 1e-4);
+      check_refused(moved, "energy 'vessel-strain'");
+      Json held = same;
+      add_to(held["curves"][0]["state_1_points"][0][1], 1e-4);
+      check_refused(held, "what the ends hold is off by");
+    }
+  }
+}
+
 TEST_CASE("rods and beams hold") {
   for (const char* kinematics : {"wire.rod.kinematics=edge-frames", "wire.rod.kinematics=nodes"}) {
     check_holds(solved("cantilever", {kinematics}));

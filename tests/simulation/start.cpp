@@ -162,43 +162,156 @@ TEST_CASE("a start that the solver cannot use makes no status worse") {
         doctest::Approx(solved(small_planar()).number("quantities.peak_displacement_mm").value).epsilon(1e-6));
 }
 
-TEST_CASE("a start that is of another scene is refused with all that does not fit") {
+TEST_CASE("a start of another mesh or kinematics is interpolated, which is said, and saves most iterations") {
   const Folder folder;
   const SimulationResult first = solved(small_planar());
   const std::string file = folder.write("first.json", first.json());
-  Simulation finer = continued(file);
-  finer.set("vessel.iliac.geometry.nodes", 30);
-  const std::string by = "--set start.from=" + file + ": ";
   const std::string start = "the start '" + file + "'";
-  const std::string mend = "the same kinematics and nodes are needed";
-  const std::string text = refusal_of(finer);
-  CHECK(contains(text, by + "field 'iliac.position' of " + start + " has 48 numbers; expected 60, as in this scene; " +
-                           mend + "\n"));
-  CHECK(contains(text, by + "field 'lunderquist.position' of " + start +
-                           " has 48 numbers; expected 60, as in this scene; " + mend));
+  Simulation finer = continued(file);
+  finer.set("vessel.iliac.geometry.nodes", 48);
+  const SimulationResult warm = solved(finer);
+  CHECK(warm.converged());
+  CHECK(warns(warm, start + " is interpolated: 'iliac' from 24 nodes to 48; 'lunderquist' from 24 nodes to 48"));
+  CHECK_FALSE(warns(warm, "multipliers"));
+  finer.unset("start.from");
+  const SimulationResult cold = solved(finer);
+  CHECK(2.0 * iterations(warm) <= iterations(cold));
+  CHECK(warm.number("energy.total").value == doctest::Approx(cold.number("energy.total").value).epsilon(1e-9));
 
   Simulation nodes = continued(file);
   nodes.set("wire.lunderquist.kinematics", "nodes");
-  const std::string extra = refusal_of(nodes);
-  CHECK(contains(extra, by + start + " has a field 'lunderquist."));
-  CHECK(contains(extra, "', which this scene does not have; expected the fields of this scene: iliac.position, "));
-  CHECK(contains(extra, "; start from a result of the same curves and kinematics"));
+  const SimulationResult other = solved(nodes);
+  CHECK(other.converged());
+  CHECK(iterations(other) <= 5.0);
+  CHECK(warns(other, start + " is interpolated: 'lunderquist' from kinematics 'edge-frames' to 'nodes'"));
+  CHECK_FALSE(warns(other, "interpolated: 'iliac'"));
+  CHECK_FALSE(warns(other, "; 'iliac'"));
 
-  Simulation other = small_planar();
-  other.set("vessel.iliac.geometry.nodes", 30);
-  const SimulationResult refused = other.solve(plugins(), {}, first);
-  CHECK_FALSE(refused.ok());
-  CHECK(contains(refused.refusal().text(),
-                 "from: field 'iliac.position' of the result has 48 numbers; expected 60, as in this scene; " + mend));
-  CHECK(contains(small_planar().solve(plugins(), {}, refused).refusal().text(),
-                 "from: the result to start from is a refusal (from: field 'iliac.position'"));
-
+  // A field that is missing is made from the shape; what fits beside it stays.
   Json document = Json::parse(first.json());
-  document["state"]["fields"].erase("iliac.position");
-  document["state"]["fields"]["iliac.angel"] = Json::array({1.0});
-  const std::string missing = refusal_of(continued(folder.write("missing.json", document.dump())));
-  CHECK(contains(missing, "missing.json' has no field 'iliac.position'; expected the fields of this scene: "));
-  CHECK(contains(missing, "missing.json' has a field 'iliac.angel', which this scene does not have"));
+  document["state"]["fields"].erase("iliac.orientation");
+  const SimulationResult mended = solved(continued(folder.write("mended.json", document.dump())));
+  CHECK(mended.converged());
+  CHECK(iterations(mended) <= 2.0);
+  CHECK(warns(mended, "is interpolated: 'iliac' to the fields position in R^n, orientation in S1, edge-length in R"));
+}
+
+TEST_CASE("multipliers of a graded mesh are carried as densities") {
+  Simulation coarse = small_planar();
+  coarse.set("wire.lunderquist.nodes", 30);
+  const SimulationResult first = solved(coarse);
+  REQUIRE(first.converged());
+  std::ostringstream spacing;
+  spacing.precision(17);
+  double sum = 0.0;
+  const auto share = [](int i) { return 1.0 + 0.5 * std::sin(0.2 * i); };
+  for (int i = 0; i < 40; ++i) sum += share(i);
+  for (int i = 0; i < 40; ++i) spacing << (i > 0 ? ", " : "[") << share(i) / sum;
+  Simulation graded = small_planar();
+  graded.set("wire.lunderquist.nodes", 41);
+  graded.set("wire.lunderquist.spacing", spacing.str() + "]");
+  const SimulationResult warm = graded.solve(plugins(), {}, first);
+  REQUIRE_MESSAGE(warm.ok(), warm.refusal().text());
+  CHECK(warm.converged());
+  CHECK(2.0 * iterations(warm) <= iterations(solved(graded)));
+}
+
+TEST_CASE("a start of another scene is refused with all that differs") {
+  const Folder folder;
+  const SimulationResult first = solved(small_planar());
+  Json document = Json::parse(first.json());
+  document["curves"][0]["name"] = "aorta";
+  document["state"]["fields"].clear();
+  const std::string file = folder.write("first.json", document.dump());
+  const std::string by = "--set start.from=" + file + ": the start '" + file + "' ";
+  const std::string rest = "; expected the vessels of this scene: iliac; start from a result of the same scene";
+  CHECK(refusal_of(continued(file)) == by + "has no vessel 'iliac'" + rest + "\n" + by +
+                                           "has a vessel 'aorta', which this scene does not have" + rest);
+  Simulation helix = Simulation::from_file(scene_file("helical-iliac.toml"));
+  const SimulationResult refused = helix.solve(plugins(), {}, first);
+  CHECK_FALSE(refused.ok());
+  CHECK(refused.refusal().text() ==
+        "from: the result is in the plane; expected a state in space, as this scene is; start from a result of the "
+        "same scene");
+  CHECK(contains(small_planar().solve(plugins(), {}, refused).refusal().text(),
+                 "from: the result to start from is a refusal (from: the result is in the plane"));
+}
+
+TEST_CASE("the file and the memory give the same bits, on another mesh and as a rest state") {
+  const Folder folder;
+  const SimulationResult first = solved(small_planar());
+  REQUIRE(first.write(folder.file("first.json")).ok());
+  for (const bool rest : {false, true}) {
+    for (const char* kinematics : {"edge-frames", "nodes"}) {
+      CAPTURE(rest);
+      CAPTURE(kinematics);
+      Simulation next = small_planar();
+      next.set("vessel.iliac.geometry.nodes", 31);
+      next.set("vessel.iliac.kinematics", kinematics);
+      if (rest) next.set("start.rest", "previous");
+      const SimulationResult in_process = next.solve(plugins(), {}, first);
+      REQUIRE_MESSAGE(in_process.ok(), in_process.refusal().text());
+      CHECK(in_process.converged());
+      next.set("start.from", folder.file("first.json"));
+      const SimulationResult from_file = solved(next);
+      Json a = Json::parse(without_origin(in_process)), b = Json::parse(without_origin(from_file));
+      CHECK(a["warnings"].size() == b["warnings"].size());
+      a.erase("warnings"), b.erase("warnings");  // they name the state
+      CHECK(difference(a.dump(), b.dump()) == "");
+    }
+  }
+}
+
+TEST_CASE("with rest = \"previous\" displacements and lengths count from the state before") {
+  const Folder folder;
+  const SimulationResult first = solved(small_planar());
+  REQUIRE(first.write(folder.file("first.json")).ok());
+  Simulation next = continued(folder.file("first.json"));
+  CHECK(solved(next).text("composition.start.rest").value == "state-1");
+  next.set("start.rest", "previous");
+  const SimulationResult second = solved(next);
+  CHECK(second.converged());
+  CHECK(second.text("composition.start.rest").value == "previous");
+  CHECK(second.numbers("curves.iliac.reference_points").value.values ==
+        first.numbers("curves.iliac.points").value.values);
+  CHECK(second.numbers("curves.iliac.state_1_points").value.values ==
+        first.numbers("curves.iliac.reference_points").value.values);
+  CHECK(first.numbers("curves.iliac.state_1_points").error != "");
+  CHECK(second.numbers("curves.lunderquist.reference_points").value.values ==
+        first.numbers("curves.lunderquist.reference_points").value.values);
+  CHECK(second.numbers("curves.iliac.radius_mm").value.values == first.numbers("curves.iliac.radius_mm").value.values);
+  const double before = first.number("quantities.peak_displacement_mm").value;
+  const double further = second.number("quantities.peak_displacement_mm").value;
+  CHECK(further > 0.1);
+  CHECK(further < before);
+  CHECK(second.number("energy.total").value < first.number("energy.total").value);
+  // A chain: the state after that is without stress once more.
+  REQUIRE(second.write(folder.file("second.json")).ok());
+  next.set("start.from", folder.file("second.json"));
+  const SimulationResult third = solved(next);
+  CHECK(third.converged());
+  CHECK(third.numbers("curves.iliac.reference_points").value.values ==
+        second.numbers("curves.iliac.points").value.values);
+  CHECK(third.number("quantities.peak_displacement_mm").value < further);
+}
+
+TEST_CASE("a prepared simulation with rest = \"previous\" is built for every state, and gives a simulation's bits") {
+  const SimulationResult first = solved(small_planar());
+  Simulation simulation = small_planar();
+  simulation.set("start.rest", "previous");
+  PreparedSimulation prepared = simulation.prepared(plugins());
+  CHECK(contains(prepared.solve().refusal().text(), "[start] has no 'from'"));
+  const SimulationResult second = prepared.solve_from(first);
+  REQUIRE_MESSAGE(second.ok(), second.refusal().text());
+  const auto plain = [](const SimulationResult& result) {
+    Json document = Json::parse(without_origin(result));
+    document["provenance"]["start"]["sha256"] = nullptr;
+    return document.dump();
+  };
+  CHECK(difference(plain(second), plain(simulation.solve(plugins(), {}, first))) == "");
+  const SimulationResult third = prepared.solve();
+  REQUIRE_MESSAGE(third.ok(), third.refusal().text());
+  CHECK(difference(plain(third), plain(simulation.solve(plugins(), {}, second))) == "");
 }
 
 TEST_CASE("a document that is none, or whose state is not known, is refused where 'from' stands") {
@@ -224,9 +337,15 @@ TEST_CASE("a document that is none, or whose state is not known, is refused wher
                      "' (No such file or directory); expected " + document +
                      "; paths of --set are relative to the working directory"));
 
-  Json quaternion = Json::parse(solved(small_planar()).json());
-  quaternion["problem"]["fields"][0]["manifold"] = "SO3";
-  CHECK(contains(said(quaternion.dump()), "lies in SO3; expected one in R^n, as in this scene"));
+  Json unknown = Json::parse(solved(small_planar()).json());
+  unknown["problem"]["fields"][1]["manifold"] = "SO3";  // a field of another meaning does not fit …
+  CHECK(solved(continued(folder.write("a.json", unknown.dump()))).converged());
+  unknown["curves"][0]["frames"][3][1] = nullptr;  // … and what replaces it is not known
+  CHECK(contains(said(unknown.dump()),
+                 from.substr(0, from.find("the start")) + "the numbers of 'iliac' in the start '" +
+                     folder.file("a.json") +
+                     "' do not fit, and it has the curve with 'frames' that are not known, so that nothing can be "
+                     "interpolated; expected a shape, or the fields position in R^n, "));
 }
 
 TEST_CASE("a path in the composition is relative to it, and the document is an input that no result replaces") {
@@ -240,7 +359,7 @@ TEST_CASE("a path in the composition is relative to it, and the document is an i
   CHECK(result.text("composition.start.from").value == folder.file("first.json"));
   CHECK(contains(result.write(folder.file("first.json")).text, "it is what the composition reads"));
   CHECK(contains(refusal_of(Simulation::from_text(text + "[start.x]\n", folder.file("scene.toml"))),
-                 "unknown key 'x' in [start]; expected one of: from"));
+                 "unknown key 'x' in [start]; expected one of: from, rest"));
 }
 
 TEST_CASE("other rows take the state without their multipliers, and say so") {
@@ -339,10 +458,11 @@ TEST_CASE("a prepared simulation is built again where a value changes more than 
   const SimulationResult finer = prepared.solve();
   CHECK(finer.converged());
   CHECK(prepared.builds() == 3);
-  CHECK(warns(finer,
-              "the result before does not fit this scene any more, which starts where its composition does: "
-              "from: field 'iliac.position' of the result has 48 numbers"));
+  CHECK(warns(finer, "the result is interpolated: 'iliac' from 24 nodes to 30; 'lunderquist' from 24 nodes to 30"));
   CHECK(prepared.solve().converged());
+  CHECK(prepared.builds() == 3);
+  CHECK(prepared.solve_afresh().converged());
+  CHECK(prepared.builds() == 4);
   prepared.unset("vessel.iliac.geometry.nodes");
   const SimulationResult coarser = prepared.solve();
   REQUIRE_MESSAGE(coarser.ok(), coarser.refusal().text());
