@@ -4,6 +4,7 @@ Exit codes: 0; 1 where an expectation is not met, a known shortfall is none any 
 up to the re-check; 2 where the input is wrong; 77 where every case needs data that is not there."""
 
 import argparse
+import collections
 import concurrent.futures
 import os
 import pathlib
@@ -85,16 +86,19 @@ def judge_case(case, solver, solved, tally, recheck):
             tally.skipped += 1
         else:
             tally.check(not wrong, f"{solver}: {wrong or agreement['path'] + ' agrees'}")
-    if recheck:
-        recheck_all(solver, solved, tally, recheck)
+    return recheck_all(solver, solved, tally, recheck) if recheck else set()
 
 
 def recheck_all(solver, solved, tally, recheck):
-    """Every `converged` is re-checked; those that are marked must not hold."""
+    """Every `converged` is re-checked, and those that are marked must not hold. Names of the runs that do not."""
+    denied = set()
     found = [(run, row) for run, row, _ in solved if row["status"] == results.CONVERGED]
-    plain = [row for run, row in found if solver not in run.recheck_shortfalls]
+    plain = [(run, row) for run, row in found if solver not in run.recheck_shortfalls]
     if plain:
-        held, fallen = grid.recheck(recheck, plain)
+        held, fallen = grid.recheck(recheck, [row for _, row in plain])
+        files = {file for file, _ in fallen}
+        denied |= {run.name for run, row in plain
+                   if os.path.join(*pathlib.Path(row["result_file"]).parts[-2:]) in files}
         tally.check(not fallen, f"{solver}: {held} of {len(plain)} `converged` stand up to the re-check"
                                 + "".join(f"; {file}: {said}" for file, said in fallen))
     for run, row in found:
@@ -106,20 +110,23 @@ def recheck_all(solver, solved, tally, recheck):
                                f"({known}); take the mark away")
         else:
             tally.shortfalls += 1
+            denied.add(run.name)
             print(f"  known {run.name}, {solver}: the re-check does not take it for an equilibrium; known: {known}",
                   flush=True)
+    return denied
 
 
-def verdict_cell(run, row, document):
+def verdict_cell(run, row, document, denied):
     if row["status"] in results.NO_DOCUMENT:
         return row["status"] + ("" if row["status"] in run.verdicts else " ✗")
     order = {"saddle": ", saddle", "degenerate": ", degenerate"}.get(row["second_order"], "")
-    mark = "" if not cases.faults(run, row, document) else " ✗"
+    mark = " ✗" if cases.faults(run, row, document) else " †" if denied else ""
     return f"{row['status']}{order}, {row['iterations']}, {row['solve_s']:.2g}{mark}"
 
 
-def markdown(solved_by_case, solvers):
-    """A table per case: verdict, iterations, seconds; ✗ where a verdict or a figure is not what is true."""
+def markdown(solved_by_case, solvers, denied):
+    """A table per case: verdict, iterations, seconds; ✗ where a verdict or a figure is not what is true, † where the
+    re-check denies a `converged`. `denied`: {(case, solver): names of runs}."""
     lines = []
     for case, by_solver in solved_by_case:
         lines += [f"### {case.name}", "", case.why, "",
@@ -130,22 +137,26 @@ def markdown(solved_by_case, solvers):
         rows = zip(*(by_solver[solver] for solver in solvers))
         for entries in rows:
             run = entries[0][0]
-            cells = [verdict_cell(run, row, document) for _, row, document in entries]
+            cells = [verdict_cell(run, row, document, run.name in denied[case.name, solver])
+                     for solver, (_, row, document) in zip(solvers, entries)]
             lines.append(f"| {run.name} | {' or '.join(run.verdicts)} | " + " | ".join(cells) + " |")
         lines.append("")
     return "\n".join(lines)
 
 
-def totals(solved_by_case, solvers):
-    """Counts per solver: runs whose verdict and figures are true, and the others."""
-    lines = ["| solver | runs | as is true | not | median iterations of `converged` |", "|---|---|---|---|---|"]
+def totals(solved_by_case, solvers, denied):
+    """Counts per solver: runs whose verdict and figures are true, the others, and of the first those that the re-check
+    denies."""
+    lines = ["| solver | runs | as is true | not (✗) | denied by the re-check (†) | median iterations of `converged` |",
+             "|---|---|---|---|---|---|"]
     for solver in solvers:
         judged = [(run, row, document) for _, by_solver in solved_by_case for run, row, document in by_solver[solver]
                   if row["status"] not in results.NOT_RUN]
         good = sum(not cases.faults(*entry) for entry in judged)
+        doubted = sum(len(names) for (_, of), names in denied.items() if of == solver)
         counts = sorted(row["iterations"] for _, row, _ in judged if row["status"] == results.CONVERGED)
         middle = counts[len(counts) // 2] if counts else "–"
-        lines.append(f"| {solver} | {len(judged)} | {good} | {len(judged) - good} | {middle} |")
+        lines.append(f"| {solver} | {len(judged)} | {good} | {len(judged) - good} | {doubted} | {middle} |")
     return "\n".join(lines)
 
 
@@ -158,7 +169,7 @@ def parse(arguments):
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", help="default: hard-cases/ beside the command")
     parser.add_argument("--recheck", type=pathlib.Path, metavar="PROGRAM")
     parser.add_argument("--markdown", type=pathlib.Path, metavar="FILE", help="write the tables of docs/hard-cases.md")
-    parser.add_argument("--time-limit", type=float, default=60.0, metavar="SECONDS")
+    parser.add_argument("--time-limit", type=float, default=300.0, metavar="SECONDS")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--keep", action="store_true", help="do not solve again what DIR already holds")
     parser.add_argument("--full", action="store_true", default="BOWSTRING_TEST_FULL" in os.environ,
@@ -179,7 +190,7 @@ def run(asked):
                                             agreements=()) for case in chosen]
     recheck = str(asked.recheck.absolute()) if asked.recheck else None
     runner = grid.Runner(bowstring, folder, asked.time_limit, not asked.keep)
-    tally, solved_by_case = Tally(), []
+    tally, solved_by_case, denied = Tally(), [], collections.defaultdict(set)
     with concurrent.futures.ThreadPoolExecutor(asked.jobs) as pool:
         try:
             futures = [(case, {solver: pool.submit(solve, runner, case, solver, asked.full) for solver in solvers})
@@ -193,13 +204,14 @@ def run(asked):
                     tally.skipped += 1
                     continue
                 for solver in solvers:
-                    judge_case(case, solver, solved[solver], tally, recheck)
+                    denied[case.name, solver] = judge_case(case, solver, solved[solver], tally, recheck)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             runner.stop()
             raise
     if asked.markdown:
-        asked.markdown.write_text(totals(solved_by_case, solvers) + "\n\n" + markdown(solved_by_case, solvers))
+        asked.markdown.write_text(totals(solved_by_case, solvers, denied) + "\n\n"
+                                  + markdown(solved_by_case, solvers, denied))
     print(f"{tally.passed} passed, {tally.failed} failed, {tally.skipped} skipped"
           + (f", {tally.shortfalls} known shortfalls" if tally.shortfalls else ""))
     if tally.failed:
