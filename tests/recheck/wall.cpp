@@ -152,10 +152,12 @@ WallPoint Wall::descend(const Point& x, double wire_radius, double start) const 
   split(start, segment, u);
   for (int visited = 0; visited <= 2 * segments(); ++visited) {
     u = minimise(x, wire_radius, segment, u);
-    if (u >= 1.0 && segment + 1 < segments() && gap(x, wire_radius, segment + 1, 0.0).first < 0.0) {
+    // A sample that meets a node is a rounding away from it, and the next segment may go on downhill.
+    constexpr double rounding = 1e-12;
+    if (u >= 1.0 - rounding && segment + 1 < segments() && gap(x, wire_radius, segment + 1, 0.0).first < 0.0) {
       ++segment;
       u = 0.0;
-    } else if (u <= 0.0 && segment > 0 && gap(x, wire_radius, segment - 1, 1.0).first > 0.0) {
+    } else if (u <= rounding && segment > 0 && gap(x, wire_radius, segment - 1, 1.0).first > 0.0) {
       --segment;
       u = 1.0;
     } else {
