@@ -18,6 +18,7 @@ constexpr int max_steps = 64;               // per segment; bisection alone need
 constexpr int samples_per_segment = 4;      // of a global scan
 constexpr double near_end = 0.5;            // of a chord: a largest gap that stood nearer leaves it there
 constexpr double bend_that_matters = 0.25;  // of h: with less the middle of a chord stands for its largest gap
+constexpr double least_near = 1e-2;         // mm, and
 constexpr double near_wall = 0.1;           // of the clearance: a chord that is farther away is looked at less closely
 
 double dot(const double a[3], const double b[3]) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -509,7 +510,7 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
     const bool leaves_by_end = std::fabs(chord.t - end.t) < near_end;
     const bool stands = chord.t > margin && chord.t < 1.0 - margin && !leaves_by_end;
     const auto without = [&] { return answer(stands ? at(chord.t, start) : end, false); };
-    if (!(height(end) > -near_wall * end.closest.clearance)) return without();
+    if (!(height(end) > -std::max(near_wall * end.closest.clearance, least_near))) return without();
     // A chord that is long for the wall's bends may leave the wall from both ends and come back between.
     Sample middle = at(0.5, low.closest.at.sigma()), first = low, last = high, other = middle;
     const bool before = usable(middle) && rises_and_falls(first, middle);

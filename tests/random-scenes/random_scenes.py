@@ -247,7 +247,7 @@ def run(asked):
     if asked.write:
         asked.write.write_text(drawing.draw(asked.seed, asked.numbers[0], asked.group, asked.continuation).text)
         return 0
-    offered = offered_solvers(str(asked.bowstring))
+    offered = offered_solvers(str(asked.bowstring.absolute()))
     solvers = asked.solver or [name for name in NATIVE_SOLVERS if name in offered]
     for name in solvers:
         if name not in offered:
