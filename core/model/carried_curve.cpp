@@ -259,6 +259,7 @@ class Carrying {
                   " … " + number(recorded->along_end) + " mm to " + number(curve.along_begin) + " … " +
                   number(curve.along_end) + " mm";
     }
+    if (out.same_mesh) return take(*recorded, out);
     interpolate(curve, *recorded, span, out);
   }
 
@@ -271,11 +272,20 @@ class Carrying {
            std::fabs(curve.along_end - recorded.along_end) > slack;
   }
 
+  /// The recorded curve as it stands.
+  static void take(const RecordedCurve& recorded, CarriedCurve& out) {
+    out.share = recorded.share;
+    out.points = recorded.points;
+    if (!edges_of(recorded.dimension, out)) return;
+    const std::vector<lie::Rotation> frames = edge_frames(recorded.frames);
+    out.orientation = orient_edges(out.points, recorded.dimension, {frames.begin(), frames.end()});
+  }
+
   void interpolate(const Curve& curve, const RecordedCurve& recorded, bool span, CarriedCurve& out) {
     const int d = curve.view.dimension;
     const MaterialCurve material(recorded);
     std::vector<double>& share = out.share;
-    share = out.same_mesh ? recorded.share : material_shares(curve);
+    share = material_shares(curve);
     if (span) {
       for (double& s : share) {
         const double arc = curve.along_begin + s * (curve.along_end - curve.along_begin);
@@ -316,7 +326,7 @@ class Carrying {
         append(point, d, out.points);
       }
     }
-    if (!edges_of(curve, out)) return;
+    if (!edges_of(d, out)) return;
     std::vector<std::optional<lie::Rotation>> known(share.size() - 1);
     for (std::size_t i = 0; i < known.size(); ++i) {
       if (share[i] >= 0.0 && share[i + 1] <= 1.0) known[i] = material.frame(0.5 * (share[i] + share[i + 1]));
@@ -339,16 +349,16 @@ class Carrying {
       const double arc = curve.along_begin + s * (curve.along_end - curve.along_begin);
       append(way.point(arc / vessel.arc.back()), d, out.points);
     }
-    if (!edges_of(curve, out)) return;
+    if (!edges_of(d, out)) return;
     std::vector<std::optional<lie::Rotation>> known(at(curve.view.nodes - 1));
     known.front() = lie::frame_from_tangent(edge_tangent(curve.reference, d, 0));
     out.orientation = orient_edges(out.points, d, known);
   }
 
-  bool edges_of(const Curve& curve, const CarriedCurve& out) {
-    if (has_edges(out.points, curve.view.dimension)) return true;
-    flaws_.push_back({carried_.name + " gives '" + curve.name + "' an edge of length zero",
-                      "nodes apart from each other", "start from another result"});
+  /// Whether there are orientations to be had.
+  static bool edges_of(int d, CarriedCurve& out) {
+    if (has_edges(out.points, d)) return true;
+    out.flaw = "an edge of length zero";
     return false;
   }
 

@@ -125,7 +125,10 @@ class CurveTaking {
   std::vector<std::string> moved;  ///< fields that ends hold elsewhere, with by how much
 
   void run(double* q) {
-    if (!curve_.state1.empty()) return;  // the vessel is at its rest state
+    if (!curve_.state1.empty()) {  // the vessel is at its rest state
+      if (!shape_.told.empty()) interpolated = "'" + curve_.name + "' " + shape_.told + ", as its rest state";
+      return;
+    }
     const bool whole = shape_.recorded && shape_.same_mesh && all_fields_fit();
     if (!whole && !adopt(q)) return;
     for (const FieldDeclaration& field : curve_.declaration.fields) {
@@ -135,9 +138,10 @@ class CurveTaking {
         take_field(field, *numbers, "field '" + numbers->name + "' of " + carried_.name, flaws, q);
         if (!flaws.empty()) return;
       }
-      const bool ends = !whole && field.name != "position";  // what is interpolated ends near what is held
-      const double by = hold(field, q);
-      if (by > same_coordinate && shape_.recorded && !ends) {
+      // What is interpolated only comes near to what is held, but for the end nodes.
+      const double ends = ends_moved(field, q), all = hold(field, q);
+      const double by = as_it_stands ? all : ends;
+      if (by > same_coordinate && shape_.recorded) {
         moved.push_back("'" + field_name(curve_, field) + "' by up to " + number(by));
       }
       q += field.count * coordinate_count(field.manifold, field.dimension);
@@ -147,6 +151,18 @@ class CurveTaking {
  private:
   const NamedNumbers* recorded(const FieldDeclaration& field) const {
     return find(carried_.state->fields, field_name(curve_, field));
+  }
+
+  /// By how much the held coordinates of the end nodes differ from where the scene's own start has them.
+  static double ends_moved(const FieldDeclaration& field, const double* q) {
+    if (field.manifold != Manifold::vector || field.fixed.empty()) return 0.0;
+    double moved = 0.0;
+    for (const int node : {0, field.count - 1}) {
+      for (int k = node * field.dimension; k < (node + 1) * field.dimension; ++k) {
+        if (field.fixed[at(k)] != 0) moved = std::max(moved, std::fabs(q[k] - field.start[at(k)]));
+      }
+    }
+    return moved;
   }
 
   bool all_fields_fit() const {

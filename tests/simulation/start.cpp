@@ -252,6 +252,9 @@ TEST_CASE("the file and the memory give the same bits, on another mesh and as a 
       const SimulationResult in_process = next.solve(plugins(), {}, first);
       REQUIRE_MESSAGE(in_process.ok(), in_process.refusal().text());
       CHECK(in_process.converged());
+      CHECK(warns(in_process, std::string("the result is interpolated: 'iliac' from 24 nodes to 31") +
+                                  (rest ? ", as its rest state; " : "")));
+      CHECK_FALSE(warns(in_process, "what ends hold"));
       next.set("start.from", folder.file("first.json"));
       const SimulationResult from_file = solved(next);
       Json a = Json::parse(without_origin(in_process)), b = Json::parse(without_origin(from_file));
