@@ -70,6 +70,19 @@ const Node* table_of(const Node& root, const char* name, const std::string& mend
 
 bool is_step_key(const std::string& key) { return key == "name" || key == "rest"; }
 
+void lay_step(Node& root, const Node& step, Report& report) {
+  for (const Entry& entry : step.entries) {
+    if (is_step_key(entry.key)) continue;
+    if (entry.value.is_table() && !entry.value.inline_table) {
+      report.error(entry.position, "'" + entry.key + "' in [[step]] opens a table",
+                   "a whole path in quotes, with a value or an inline table { … }",
+                   "write it as in \"energy.axial-tension.tension\" = \"12 N\"");
+    } else {
+      apply_override(root, entry.key, entry.position, entry.value, report);
+    }
+  }
+}
+
 }  // namespace
 
 ContinuationTable read_continuation(const Node& root, Report& report) {
@@ -189,18 +202,11 @@ void apply_steps(Node& root, int last, Report& report) {
   const std::vector<Node> steps = list->value.is_list() ? list->value.items : std::vector<Node>{};
   root.erase("step");
   for (int k = 0; k <= last && k < static_cast<int>(steps.size()); ++k) {
-    const Node& step = steps[static_cast<std::size_t>(k)];
-    for (const Entry& entry : step.entries) {
-      if (is_step_key(entry.key)) continue;
-      if (entry.value.is_table() && !entry.value.inline_table) {
-        report.error(entry.position, "'" + entry.key + "' in [[step]] opens a table",
-                     "a whole path in quotes, with a value or an inline table { … }",
-                     "write it as in \"energy.axial-tension.tension\" = \"12 N\"");
-      } else {
-        apply_override(root, entry.key, entry.position, entry.value, report);
-      }
-    }
+    lay_step(root, steps[static_cast<std::size_t>(k)], report);
   }
+  // What is wrong with the paths of later steps is told with the rest.
+  Node later = root;
+  for (std::size_t k = static_cast<std::size_t>(last) + 1; k < steps.size(); ++k) lay_step(later, steps[k], report);
   if (last <= 0 || last >= static_cast<int>(steps.size())) return;
   root.erase("start");  // a step begins where the one before it ended
   if (const Entry* rest = steps[static_cast<std::size_t>(last)].find("rest")) {

@@ -326,8 +326,7 @@ class Walk {
 
   /// What the walk came to stands for the result: the session goes back there.
   void mark_unfinished() {
-    Refusal refusal;
-    family_.at(share_, refusal);
+    follower_.place(share_, solution_.q);
     Certificate& certificate = solution_.certificate;
     const std::string reached = value_text(table_.range, share_);
     if (certificate.verdict == Verdict::converged) certificate.verdict = Verdict::stalled;

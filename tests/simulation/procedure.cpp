@@ -82,7 +82,7 @@ TEST_CASE("a walk that is a fallback is taken where the cold solve fails, which 
   const SimulationResult without = simulation.solve(plugins());
   CHECK(without.converged());
   CHECK(without.numbers("path.parameter").value.rows == 0);
-  simulation.set("solver.max-iterations", 12);
+  simulation.set("solver.max-iterations", 8);
   const SimulationResult with = simulation.solve(plugins());
   if (with.converged() && with.numbers("path.parameter").value.rows > 0) {
     CHECK(contains(with.warnings().back(), "[continuation] came to"));
