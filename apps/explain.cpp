@@ -3,6 +3,7 @@
 
 #include "apps/shell.hpp"
 #include "core/model/manifold.hpp"
+#include "core/procedure/procedure.hpp"
 
 namespace bowstring::apps {
 
@@ -64,6 +65,24 @@ void explain_plugins(const Session& session, const Registry& registry) {
   for (const std::string& line : lines) std::printf("  %s\n", line.c_str());
 }
 
+void explain_procedure(const Composition& composition) {
+  const ContinuationTable& walk = composition.continuation;
+  if (walk.given) {
+    std::printf("walks '%s' from %s to %s%s\n", walk.path.c_str(), walk.range.text(0.0).c_str(),
+                walk.range.text(1.0).c_str(),
+                walk.fallback ? ", where the solve from the start does not converge" : "");
+  }
+  if (composition.multistart.given) {
+    std::printf("solved from %s, perturbed with seed %ld\n",
+                counted(static_cast<int>(composition.multistart.starts), "start").c_str(), composition.multistart.seed);
+  }
+  for (std::size_t k = 0; k < composition.steps.size(); ++k) {
+    std::printf("%s '%s'%s\n", k == 0 ? "this is the first of a chain of states:" : "then",
+                composition.steps[k].name.c_str(),
+                composition.steps[k].rest_is_previous ? ", whose rest state is the state before" : "");
+  }
+}
+
 }  // namespace
 
 int explain(const CommonOptions& common, const std::string& file, const std::vector<std::string>& set) {
@@ -72,9 +91,10 @@ int explain(const CommonOptions& common, const std::string& file, const std::vec
   if (!parse_overrides(set, request.overrides)) return exit_wrong_input;
   PluginHost host = make_host(common, file);
   Refusal refusal;
-  const std::unique_ptr<Session> session = prepare(request, host, refusal);
-  if (session == nullptr) return report(refusal);
+  const std::unique_ptr<Procedure> procedure = Procedure::prepare(request, host, refusal);
+  if (procedure == nullptr) return report(refusal);
 
+  const Session* session = &procedure->session();
   const Composition& composition = session->composition;
   if (!composition.title.empty()) std::printf("%s\n", composition.title.c_str());
   std::printf("scene of dimension %d\n", composition.dimension);
@@ -92,6 +112,7 @@ int explain(const CommonOptions& common, const std::string& file, const std::vec
   std::printf("Hessian: %d entries in its lower triangle; Jacobian: %d\n",
               session->assembly->hessian_pattern().entries(), session->assembly->jacobian_pattern().entries());
   std::printf("solved by %s with rows by %s\n", composition.solver.name.c_str(), composition.enforcement.name.c_str());
+  explain_procedure(composition);
   explain_plugins(*session, host);
   for (const std::string& idle : composition.without_effect) std::printf("without effect: %s\n", idle.c_str());
   for (const std::string& idle : session->scene->without_effect) std::printf("without effect: %s\n", idle.c_str());

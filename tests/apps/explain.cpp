@@ -87,6 +87,14 @@ TEST_CASE("node positions alone have no orientations") {
   CHECK_FALSE(contains(text, "edge-frames"));
 }
 
+TEST_CASE("explain says what a composition asks for beyond one solve") {
+  check_parts(successful({"explain", scene("shallow-arch.toml")}),
+              {"walks 'energy.point-load.force' from [\"0 N\", \"0 N\"] to [\"0 N\", \"6 N\"]\n"});
+  check_parts(successful({"explain", scene("rod-in-channel.toml")}), {"solved from 9 starts, perturbed with seed 1\n"});
+  check_parts(successful({"explain", scene("wire-exchange.toml")}),
+              {"this is the first of a chain of states: 'stiff wire'\nthen 'soft wire'\n"});
+}
+
 TEST_CASE("explain says what has no effect and what to beware of") {
   const std::string text = successful(
       {"explain", scene("planar-iliac.toml"), "--set", "energy.vessel-strain.torsional-stiffness=\"133 N mm^2\""});
