@@ -1,35 +1,11 @@
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <functional>
-#include <new>
-
+#include "tests/allocations.hpp"
 #include "tests/assembly/small_scene.hpp"
-
-namespace {
-
-long allocations = 0;
-
-}  // namespace
-
-// Every library of the process, plugins included, allocates through these.
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace bowstring::testing {
 
 namespace {
-
-long allocations_of(const std::function<void()>& call) {
-  const long before = allocations;
-  call();
-  return allocations - before;
-}
 
 /// What a solver holds.
 struct Buffers {

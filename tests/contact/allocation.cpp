@@ -1,29 +1,15 @@
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <new>
 #include <random>
 
 #include "core/contact/crossing.hpp"
 #include "core/contact/gap.hpp"
+#include "tests/allocations.hpp"
 #include "tests/contact/tubes.hpp"
-
-namespace {
-
-int allocations = 0;
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 TEST_CASE("searches, derivatives and checks allocate nothing") {
   using namespace bowstring::contact;
+  using bowstring::testing::allocations;
   std::mt19937 random(31);
   const testing::Tube tube = testing::crooked_tube(3, 30, random);
   const double x[] = {50.0, 3.0, 2.0};
@@ -31,7 +17,7 @@ TEST_CASE("searches, derivatives and checks allocate nothing") {
   double hessian[sizeof(gradient) / sizeof(double) * (3 * (1 + max_stencil) + 1) / 2];
   const WirePolyline wire{30, tube.points.data(), nullptr};
 
-  const int before = allocations;
+  const long before = allocations;
   double sum = 0.0;
   for (const Interpolation interpolation : {Interpolation::polyline, Interpolation::spline}) {
     const Centerline curve = tube.view(interpolation);
@@ -43,7 +29,7 @@ TEST_CASE("searches, derivatives and checks allocate nothing") {
     }
     sum += check_wall(curve, wire).dense.depth + tube_folds(curve).value;
   }
-  const int after = allocations;
+  const long after = allocations;
   REQUIRE(sum != 0.0);
   REQUIRE(before > 0);
   CHECK(after == before);
