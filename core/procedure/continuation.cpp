@@ -91,6 +91,10 @@ class Walk {
     point.iterations = solution.solver.iterations;
     point.by_solver = by_solver;
     point.state = summarise(family_.session(), solution);
+    // Of a point the document has figures alone.
+    point.state.readings.curves.clear();
+    point.state.readings.contacts.clear();
+    point.state.readings.supports.clear();
     path_.points.push_back(std::move(point));
   }
 

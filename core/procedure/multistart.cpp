@@ -59,12 +59,13 @@ class Search {
       : session_(session), table_(table), progress_(progress), solution_(solution), found_(found) {}
 
   void run() {
-    const std::vector<double> first = session_.start.q.empty() ? session_.scene->start_coordinates() : session_.start.q;
-    take(solution_, "start 1", true);
+    const std::vector<double> own = session_.start.q.empty() ? session_.scene->start_coordinates() : session_.start.q;
+    // A walk has led to where no start leads.
+    const std::vector<double>& first = session_.composition.continuation.given ? solution_.q : own;
+    int lost = take(solution_, "start 1", true) ? 0 : 1;
     const double amplitude = table_.perturbation.value_or(default_perturbation());
     std::mt19937 random(static_cast<std::mt19937::result_type>(table_.seed));
     std::vector<Wave> waves;
-    int lost = 0;
     for (long k = 1; k < table_.starts && !stopped_; ++k) {
       const bool mirror = table_.mirrored && k % 2 == 0;
       if (!mirror) {
@@ -76,7 +77,9 @@ class Search {
       if (!q || !try_start(*q, "start " + std::to_string(k + 1))) ++lost;
     }
     order();
-    if (table_.saddles && !stopped_) look_for_saddles();
+    // Saddles are those of exact rows.
+    const bool exact = session_.composition.enforcement.name == "kkt" || session_.assembly->summary().inequalities == 0;
+    if (table_.saddles && exact && !stopped_) look_for_saddles();
     choose(lost);
   }
 

@@ -1,6 +1,7 @@
 #include "core/procedure/procedure.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "core/procedure/continuation.hpp"
@@ -95,6 +96,7 @@ std::unique_ptr<Procedure> Procedure::prepare(const CompositionRequest& request,
 StateResult Procedure::solve_state(const CompositionRequest& request, std::unique_ptr<Session> session,
                                    const CarriedState* carried,
                                    const std::function<bool(const IterationRecord&)>& progress) const {
+  const auto begin = std::chrono::steady_clock::now();
   StateResult out;
   const ContinuationTable table = session->composition.continuation;
   const MultistartTable multistart = session->composition.multistart;
@@ -131,6 +133,12 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
   }
   out.readable = read_solution(*solved.session, solved.solution, out.readings);
   out.session = record_of(*solved.session, provenance_json(*solved.session, registry_));
+  if (table.given || multistart.given) {
+    // Of all solves, not of the last one.
+    Seconds& seconds = out.session.seconds;
+    seconds.solve = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    seconds.total = seconds.load + seconds.setup + seconds.solve;
+  }
   out.input_files = solved.session->composition.input_files;
   out.solution = std::move(solved.solution);
   return out;
