@@ -163,13 +163,14 @@ class WallContact final : public Constraint {
   }
 
   bool rebind_due() const noexcept override {
-    const bool near_edge = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) {
+    const bool moved = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) {
+      if (row.jumped) return true;
       if (!row.searches) return false;
       const double margin = rebind_margin * (segments_ + 0.5);
       const auto [first, last] = std::minmax(row.end_sigma[0], row.end_sigma[1]);
       return contact::near_edge(row.window, first, last, margin, vessel_.nodes);
     });
-    return near_edge || std::any_of(rows_.begin(), rows_.end(), changes);
+    return moved || std::any_of(rows_.begin(), rows_.end(), changes);
   }
 
   Status rebind(RowDeclaration& out) noexcept override {
@@ -177,6 +178,7 @@ class WallContact final : public Constraint {
       for (Row& row : rows_) {
         cover(row);
         if (changes(row)) row.midway = !row.midway;
+        row.jumped = false;
       }
       forget();
       describe(out);
@@ -194,6 +196,7 @@ class WallContact final : public Constraint {
         if (outside_) std::transform(radius.begin(), radius.end(), radius.begin(), std::negate<>());
         make_rows(contact::places_at(wire_, wall.centerline, wire, radius.data(), first_places_), wall, wire);
         for (Row& row : rows_) settle(row, wall, wire);
+        for (Row& row : rows_) row.jumped = false;
       }
       describe(out);
     });
@@ -205,7 +208,12 @@ class WallContact final : public Constraint {
       const double* wire = at.table(wire_.index, Site::node);
       out.clear();
       for (const Row& row : rows_) {
-        const RowPoint point = locate(row, wall, wire, reach_of(row));
+        RowPoint point = locate(row, wall, wire, reach_of(row));
+        const contact::ClosestPoint lowest = lowest_place(row, wall, point);
+        if (lowest.gap < point.closest.gap) {
+          point.closest = lowest;
+          point.gap = lowest.gap;
+        }
         const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
         double x[3] = {};
         point.wire.position(dimension_, x);
@@ -342,6 +350,7 @@ class WallContact final : public Constraint {
     cover(row);
     refer_to(row, wall, wire, row.window);
     cover(row);
+    row.jumped = false;
     row.midway = changes(row);
     rows_.push_back(row);
   }
