@@ -72,7 +72,7 @@ class Search {
 
   bool connected(const Ball& here, double from, const ClosestPoint& found) const noexcept {
     const Ball there = ball(found.at);
-    const auto [low, high] = std::minmax(from, found.at.sigma());
+    const double to = found.at.sigma(), low = std::min(from, to), high = std::max(from, to);
     const int last = static_cast<int>(std::floor(high * samples_per_segment));
     for (int k = static_cast<int>(std::ceil(low * samples_per_segment)); k <= last; ++k) {
       const Ball between = ball(k);
