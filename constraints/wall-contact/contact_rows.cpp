@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/contact/connected.hpp"
-
 namespace bowstring::wall_contact {
 
 namespace {
 
 constexpr int most_places = 2 + contact::max_stencil;
-constexpr double near_wall = 0.1;  // of the clearance: a row that is farther away carries nothing at either place
+constexpr double near_wall = 0.01;  // of the clearance: a row that is farther away carries nothing at either place
 
 /// Inside h is the gap itself, outside its opposite with the wire's radius added to the tube's.
 double sign(const Wall& wall) noexcept { return wall.outside ? -1.0 : 1.0; }
@@ -81,7 +79,7 @@ contact::ClosestPoint lowest_place(const Row& row, const Wall& wall, const RowPo
   if (!row.searches || row.extremal || wall.outside) return point.closest;
   double x[3] = {};
   point.wire.position(wall.centerline.dimension, x);
-  return contact::lowest_connected(wall.centerline, x, point.wire.shape(wall.form), point.closest);
+  return contact::lowest_connected(wall.centerline, wall.bounds, x, point.wire.shape(wall.form), point.closest);
 }
 
 void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window, const RowPoint* known) noexcept {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/contact/connected.hpp"
 #include "core/contact/gap.hpp"
 #include "core/interfaces/constraint.hpp"
 
@@ -18,7 +19,8 @@ enum class Discretisation : int {
 struct Wall {
   contact::Centerline centerline;
   contact::GapForm form = contact::GapForm::squared;
-  bool outside = false;  ///< the wire stays outside of the tube instead of inside
+  bool outside = false;        ///< the wire stays outside of the tube instead of inside
+  contact::TubeBounds bounds;  ///< where rows look for the lowest place
 };
 
 /// One point of the wire that stays on its side of the wall.

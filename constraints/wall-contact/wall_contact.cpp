@@ -87,7 +87,7 @@ class WallContact final : public Constraint {
       segments_ = window_.segments(scene);
       first_places_ = first_places(scene);
       measure_clearance(first_places_);
-      make_rows(first_places_, wall_of(vessel_.start), wire_.start);
+      make_rows(first_places_, bounded_wall_of(vessel_.start), wire_.start);
       describe(out);
       out.inside_lumen = !outside_;
       warn(out);
@@ -140,7 +140,7 @@ class WallContact final : public Constraint {
   }
 
   Status accept(const PlaceTables& at) noexcept override {
-    const Wall wall = wall_at(at);
+    const Wall wall = bounded_wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const Found& found = found_[r];
@@ -187,7 +187,7 @@ class WallContact final : public Constraint {
 
   Status bind(const PlaceTables& at, RowDeclaration& out) noexcept override {
     return guard([&] {
-      const Wall wall = wall_at(at);
+      const Wall wall = bounded_wall_at(at);
       const double* wire = at.table(wire_.index, Site::node);
       if (discretisation == Discretisation::same_index) {
         make_rows(first_places_, wall, wire);
@@ -204,7 +204,7 @@ class WallContact final : public Constraint {
 
   Status report(const PlaceTables& at, std::vector<RowReport>& out) const noexcept override {
     return guard([&] {
-      const Wall wall = wall_at(at);
+      const Wall wall = bounded_wall_at(at);
       const double* wire = at.table(wire_.index, Site::node);
       out.clear();
       for (const Row& row : rows_) {
@@ -245,7 +245,16 @@ class WallContact final : public Constraint {
 
   Wall wall_at(const PlaceTables& at) const noexcept { return wall_of(at.table(vessel_.index, Site::node)); }
   Wall wall_of(const double* points) const noexcept {
-    return {{interpolation_, dimension_, vessel_.nodes, points, radius_.data()}, form_, outside_};
+    return {{interpolation_, dimension_, vessel_.nodes, points, radius_.data()}, form_, outside_, {}};
+  }
+  /// For what looks for the lowest places.
+  Wall bounded_wall_of(const double* points) const noexcept {
+    Wall wall = wall_of(points);
+    wall.bounds = contact::tube_bounds(wall.centerline);
+    return wall;
+  }
+  Wall bounded_wall_at(const PlaceTables& at) const noexcept {
+    return bounded_wall_of(at.table(vessel_.index, Site::node));
   }
 
   /// Where a row may find its place: on a spline its search descends from the accepted place and cannot take a shortcut

@@ -53,7 +53,7 @@ struct Measured {
 template <int dim>
 class Follower {
  public:
-  explicit Follower(const Centerline& vessel) noexcept : vessel_(vessel) {
+  explicit Follower(const Centerline& vessel) noexcept : vessel_(vessel), bounds_(tube_bounds(vessel)) {
     vessel_.interpolation = Interpolation::spline;
   }
 
@@ -105,7 +105,7 @@ class Follower {
     const Place before = here_;
     const GapShape shape{GapForm::squared, wire_radius};
     const ClosestPoint from = gap_at(vessel_, x, shape, {before.segment, before.u});
-    const ClosestPoint lowest = lowest_connected(vessel_, x, shape, from);
+    const ClosestPoint lowest = lowest_connected(vessel_, bounds_, x, shape, from);
     if (!(lowest.gap < from.gap)) return;
     take(x, wire_radius, lowest);
     if (!(here_.depth < before.depth)) here_ = before;
@@ -189,6 +189,7 @@ class Follower {
   }
 
   Centerline vessel_;
+  TubeBounds bounds_;
   Place here_;
   SegmentPolynomial polynomial_;  // relative to the segment's first node
   int polynomial_segment_ = -1;

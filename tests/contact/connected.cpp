@@ -39,7 +39,7 @@ TEST_CASE("of two places beside a ridge the lower one is taken from both sides, 
       REQUIRE(std::abs(narrow.gap - wide.gap) > 0.05);
       const ClosestPoint& lower = narrow.gap < wide.gap ? narrow : wide;
       for (const ClosestPoint& from : {wide, narrow}) {
-        const ClosestPoint found = lowest_connected(curve, x, shape, from);
+        const ClosestPoint found = lowest_connected(curve, tube_bounds(curve), x, shape, from);
         CHECK(found.at.sigma() == doctest::Approx(lower.at.sigma()).epsilon(1e-9));
         CHECK(found.gap == doctest::Approx(lower.gap).epsilon(1e-9));
       }
@@ -53,13 +53,13 @@ TEST_CASE("where nothing lower is connected the place stays as it is") {
   const double x[] = {10.0, 5.0};
   const ClosestPoint from = closest(curve, x, squared, whole(curve), 20.0);
   REQUIRE(from.gap < -0.5);
-  const ClosestPoint found = lowest_connected(curve, x, squared, from);
+  const ClosestPoint found = lowest_connected(curve, tube_bounds(curve), x, squared, from);
   CHECK(found.at.sigma() == from.at.sigma());
   CHECK(found.gap == from.gap);
   const Centerline polyline = vessel.view(Interpolation::polyline);
   const double beside[] = {24.0, 2.9};
   const ClosestPoint at = gap_at(polyline, beside, squared, coordinate(48.0, 81));
-  CHECK(lowest_connected(polyline, beside, squared, at).at.sigma() == at.at.sigma());
+  CHECK(lowest_connected(polyline, tube_bounds(polyline), beside, squared, at).at.sigma() == at.at.sigma());
 }
 
 TEST_CASE("another limb of a hairpin is lower and not connected") {
@@ -72,7 +72,7 @@ TEST_CASE("another limb of a hairpin is lower and not connected") {
     const ClosestPoint other = globally_closest(curve, x, squared);
     REQUIRE(other.gap < -1.0);
     REQUIRE(from.gap > 5.0);
-    CHECK(lowest_connected(curve, x, squared, from).at.sigma() == from.at.sigma());
+    CHECK(lowest_connected(curve, tube_bounds(curve), x, squared, from).at.sigma() == from.at.sigma());
   }
 }
 
@@ -90,6 +90,7 @@ TEST_CASE("the next turn of overlapping tubes is lower and not connected") {
     const ClosestPoint other = globally_closest(curve, x, squared);
     REQUIRE(other.gap < from.gap - 0.5);
     REQUIRE(other.at.sigma() > 150.0);
-    CHECK(lowest_connected(curve, x, squared, from).at.sigma() == doctest::Approx(from.at.sigma()).epsilon(1e-9));
+    CHECK(lowest_connected(curve, tube_bounds(curve), x, squared, from).at.sigma() ==
+          doctest::Approx(from.at.sigma()).epsilon(1e-9));
   }
 }
