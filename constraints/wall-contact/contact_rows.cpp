@@ -8,6 +8,7 @@ namespace bowstring::wall_contact {
 namespace {
 
 constexpr int most_places = 2 + contact::max_stencil;
+constexpr double near_wall = 0.01;  // of the clearance: a row that is farther away carries nothing at either place
 
 /// Inside h is the gap itself, outside its opposite with the wire's radius added to the tube's.
 double sign(const Wall& wall) noexcept { return wall.outside ? -1.0 : 1.0; }
@@ -74,8 +75,23 @@ void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion
   }
 }
 
+contact::ClosestPoint lowest_place(const Row& row, const Wall& wall, const RowPoint& point) noexcept {
+  if (!row.searches || row.extremal || wall.outside) return point.closest;
+  double x[3] = {};
+  point.wire.position(wall.centerline.dimension, x);
+  return contact::lowest_connected(wall.centerline, wall.bounds, x, point.wire.shape(wall.form), point.closest);
+}
+
 void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window, const RowPoint* known) noexcept {
-  const RowPoint point = known != nullptr ? *known : locate(row, wall, wire, window);
+  RowPoint point = known != nullptr ? *known : locate(row, wall, wire, window);
+  if (point.gap > -near_wall * point.closest.clearance) {
+    const contact::ClosestPoint lowest = lowest_place(row, wall, point);
+    if (lowest.gap < point.gap) {
+      point.closest = lowest;
+      point.gap = lowest.gap;
+      row.jumped = true;
+    }
+  }
   const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
   const int dimension = wall.centerline.dimension;
   double x[3] = {};

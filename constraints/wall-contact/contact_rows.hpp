@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/contact/connected.hpp"
 #include "core/contact/gap.hpp"
 #include "core/interfaces/constraint.hpp"
 
@@ -18,7 +19,8 @@ enum class Discretisation : int {
 struct Wall {
   contact::Centerline centerline;
   contact::GapForm form = contact::GapForm::squared;
-  bool outside = false;  ///< the wire stays outside of the tube instead of inside
+  bool outside = false;        ///< the wire stays outside of the tube instead of inside
+  contact::TubeBounds bounds;  ///< where rows look for the lowest place
 };
 
 /// One point of the wire that stays on its side of the wall.
@@ -38,6 +40,7 @@ struct Row {
   double offset[3] = {};      ///< x − q
   double tangent[3] = {};     ///< unit, of the vessel
   double gap = 0.0, clearance = 1.0;
+  bool jumped = false;  ///< σ is not where the search from the place before ended: its gap is another function
 
   int places() const noexcept { return nodes + covers.count; }
 };
@@ -69,7 +72,13 @@ void write_gradient(const Row& row, const Wall& wall, const contact::GapExpansio
 void write_hessian(const Row& row, const Wall& wall, const contact::GapExpansion& expansion, double weight,
                    bool all_places, double* out) noexcept;
 
-/// Makes the state the row's accepted one. `point`: what `locate` answers there, where that is known.
+/// The lowest place that is connected to where `locate` ended: h is the least gap, and a search that descends from the
+/// place before misses a lower minimum beyond a ridge of the wall. Chords whose t is searched for, and the outside of a
+/// tube, keep their place.
+contact::ClosestPoint lowest_place(const Row& row, const Wall& wall, const RowPoint& point) noexcept;
+
+/// Makes the state the row's accepted one, at the lowest place where the row is near the wall. `point`: what `locate`
+/// answers there, where that is known.
 void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window window,
               const RowPoint* point = nullptr) noexcept;
 

@@ -87,7 +87,7 @@ class WallContact final : public Constraint {
       segments_ = window_.segments(scene);
       first_places_ = first_places(scene);
       measure_clearance(first_places_);
-      make_rows(first_places_, wall_of(vessel_.start), wire_.start);
+      make_rows(first_places_, bounded_wall_of(vessel_.start), wire_.start);
       describe(out);
       out.inside_lumen = !outside_;
       warn(out);
@@ -140,7 +140,7 @@ class WallContact final : public Constraint {
   }
 
   Status accept(const PlaceTables& at) noexcept override {
-    const Wall wall = wall_at(at);
+    const Wall wall = bounded_wall_at(at);
     const double* wire = at.table(wire_.index, Site::node);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
       const Found& found = found_[r];
@@ -163,13 +163,14 @@ class WallContact final : public Constraint {
   }
 
   bool rebind_due() const noexcept override {
-    const bool near_edge = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) {
+    const bool moved = std::any_of(rows_.begin(), rows_.end(), [&](const Row& row) {
+      if (row.jumped) return true;
       if (!row.searches) return false;
       const double margin = rebind_margin * (segments_ + 0.5);
       const auto [first, last] = std::minmax(row.end_sigma[0], row.end_sigma[1]);
       return contact::near_edge(row.window, first, last, margin, vessel_.nodes);
     });
-    return near_edge || std::any_of(rows_.begin(), rows_.end(), changes);
+    return moved || std::any_of(rows_.begin(), rows_.end(), changes);
   }
 
   Status rebind(RowDeclaration& out) noexcept override {
@@ -177,6 +178,7 @@ class WallContact final : public Constraint {
       for (Row& row : rows_) {
         cover(row);
         if (changes(row)) row.midway = !row.midway;
+        row.jumped = false;
       }
       forget();
       describe(out);
@@ -185,7 +187,7 @@ class WallContact final : public Constraint {
 
   Status bind(const PlaceTables& at, RowDeclaration& out) noexcept override {
     return guard([&] {
-      const Wall wall = wall_at(at);
+      const Wall wall = bounded_wall_at(at);
       const double* wire = at.table(wire_.index, Site::node);
       if (discretisation == Discretisation::same_index) {
         make_rows(first_places_, wall, wire);
@@ -194,6 +196,7 @@ class WallContact final : public Constraint {
         if (outside_) std::transform(radius.begin(), radius.end(), radius.begin(), std::negate<>());
         make_rows(contact::places_at(wire_, wall.centerline, wire, radius.data(), first_places_), wall, wire);
         for (Row& row : rows_) settle(row, wall, wire);
+        for (Row& row : rows_) row.jumped = false;
       }
       describe(out);
     });
@@ -201,11 +204,16 @@ class WallContact final : public Constraint {
 
   Status report(const PlaceTables& at, std::vector<RowReport>& out) const noexcept override {
     return guard([&] {
-      const Wall wall = wall_at(at);
+      const Wall wall = bounded_wall_at(at);
       const double* wire = at.table(wire_.index, Site::node);
       out.clear();
       for (const Row& row : rows_) {
-        const RowPoint point = locate(row, wall, wire, reach_of(row));
+        RowPoint point = locate(row, wall, wire, reach_of(row));
+        const contact::ClosestPoint lowest = lowest_place(row, wall, point);
+        if (lowest.gap < point.closest.gap) {
+          point.closest = lowest;
+          point.gap = lowest.gap;
+        }
         const contact::CurvePoint q = contact::evaluate(wall.centerline, point.closest.at);
         double x[3] = {};
         point.wire.position(dimension_, x);
@@ -237,7 +245,16 @@ class WallContact final : public Constraint {
 
   Wall wall_at(const PlaceTables& at) const noexcept { return wall_of(at.table(vessel_.index, Site::node)); }
   Wall wall_of(const double* points) const noexcept {
-    return {{interpolation_, dimension_, vessel_.nodes, points, radius_.data()}, form_, outside_};
+    return {{interpolation_, dimension_, vessel_.nodes, points, radius_.data()}, form_, outside_, {}};
+  }
+  /// For what looks for the lowest places.
+  Wall bounded_wall_of(const double* points) const noexcept {
+    Wall wall = wall_of(points);
+    wall.bounds = contact::tube_bounds(wall.centerline);
+    return wall;
+  }
+  Wall bounded_wall_at(const PlaceTables& at) const noexcept {
+    return bounded_wall_of(at.table(vessel_.index, Site::node));
   }
 
   /// Where a row may find its place: on a spline its search descends from the accepted place and cannot take a shortcut
@@ -342,6 +359,7 @@ class WallContact final : public Constraint {
     cover(row);
     refer_to(row, wall, wire, row.window);
     cover(row);
+    row.jumped = false;
     row.midway = changes(row);
     rows_.push_back(row);
   }

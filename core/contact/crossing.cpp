@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/connected.hpp"
 #include "core/contact/gap.hpp"
 
 namespace bowstring::contact {
@@ -52,7 +53,7 @@ struct Measured {
 template <int dim>
 class Follower {
  public:
-  explicit Follower(const Centerline& vessel) noexcept : vessel_(vessel) {
+  explicit Follower(const Centerline& vessel) noexcept : vessel_(vessel), bounds_(tube_bounds(vessel)) {
     vessel_.interpolation = Interpolation::spline;
   }
 
@@ -97,6 +98,17 @@ class Follower {
       return true;
     }
     return false;
+  }
+
+  /// Goes on from the lowest place that is connected to this one, where x is less deep there.
+  void change_over(const double* x, double wire_radius) noexcept {
+    const Place before = here_;
+    const GapShape shape{GapForm::squared, wire_radius};
+    const ClosestPoint from = gap_at(vessel_, x, shape, {before.segment, before.u});
+    const ClosestPoint lowest = lowest_connected(vessel_, bounds_, x, shape, from);
+    if (!(lowest.gap < from.gap)) return;
+    take(x, wire_radius, lowest);
+    if (!(here_.depth < before.depth)) here_ = before;
   }
 
   const Place& here() const noexcept { return here_; }
@@ -177,6 +189,7 @@ class Follower {
   }
 
   Centerline vessel_;
+  TubeBounds bounds_;
   Place here_;
   SegmentPolynomial polynomial_;  // relative to the segment's first node
   int polynomial_segment_ = -1;
@@ -212,6 +225,7 @@ class Walk {
 
   void run(std::optional<double> start) noexcept {
     follower_.begin(wire_.points, radius_at(wire_, 0, 0.0), start);
+    change_over(wire_.points, radius_at(wire_, 0, 0.0));
     for (int i = 0; i < samplings; ++i) sampling_[i].visit(follower_.here(), 0.0, 0, 0.0);
     bool quarters = true;
     for (int i = 0; i < samplings; ++i) quarters = quarters && sampling_[i].parts % 4 == 0;
@@ -236,6 +250,16 @@ class Walk {
   void point(int segment, double t, double* x) const noexcept {
     const double* p = wire_.points + segment * dim;
     for (int k = 0; k < dim; ++k) x[k] = (1.0 - t) * p[k] + t * p[dim + k];
+  }
+
+  /// A place that would be the deepest one, outside of the tube, is one only if no connected place is lower.
+  void change_over(const double* x, double radius) noexcept {
+    const double depth = follower_.here().depth;
+    if (!(depth > 0.0)) return;
+    for (int i = 0; i < samplings; ++i) {
+      if (sampling_[i].any && !(depth > sampling_[i].deepest.depth)) continue;
+      return follower_.change_over(x, radius);
+    }
   }
 
   void refine(Penetration& found) noexcept {
@@ -280,6 +304,7 @@ class Walk {
       double x[3] = {};
       point(segment, t, x);
       follower_.move(x, radius_at(wire_, segment, t), length * (t - before));
+      change_over(x, radius_at(wire_, segment, t));
       for (int i = 0; i < samplings; ++i) {
         if (static_cast<double>(next[i]) / sampling_[i].parts > t) continue;
         sampling_[i].visit(follower_.here(), arc + t * length, segment, t);

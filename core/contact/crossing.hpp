@@ -30,7 +30,9 @@ struct Penetration {
 /// it, and at most ten times as far along the vessel as the wire has moved. (Where R κ < 0.8, the closest
 /// point of a point inside moves by at most five times that point's step.) A wire that passes through the
 /// wall into another limb stays measured from the limb that it left, where a search of each point's own
-/// neighbourhood would find it inside of both. Beyond an end of the vessel the tube is taken to continue
+/// neighbourhood would find it inside of both. Where that leads deeper than anything before, the lowest place that is
+/// connected through the lumen (`lowest_connected`) is gone on from: past a ridge of the wall the nearest place jumps.
+/// Beyond an end of the vessel the tube is taken to continue
 /// straight: only distance across it counts.
 ///
 /// Samples that lie inside by more than the wire can rise on its way to them are not looked at.

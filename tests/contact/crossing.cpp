@@ -271,3 +271,58 @@ TEST_CASE("NaN in a wire or vessel is no pass") {
   const std::vector<double> straight{0.0, 0.0, 50.0, 0.0};
   CHECK(check_crossing(vessel.view(Interpolation::spline), wire_of(straight, 2)).crossed());
 }
+
+namespace {
+
+/// A straight tube of 6 mm that narrows to 3 mm within 3⅓ mm from 80 mm on, and widens again from 110 mm on.
+Tube stenosis() {
+  Tube out = tube(line, 0.0, 200.0, 321, 6.0);
+  for (int i = 0; i < out.nodes(); ++i) {
+    const double s = out.node(i)[0];
+    const double narrow =
+        std::min(std::clamp((s - 80.0) / 3.3333, 0.0, 1.0), std::clamp((113.3333 - s) / 3.3333, 0.0, 1.0));
+    out.radius[static_cast<std::size_t>(i)] = 6.0 - 3.0 * narrow;
+  }
+  return out;
+}
+
+/// A straight wire off the middle, its nodes in order or in reverse.
+std::vector<double> straight_wire(double off, bool reversed) {
+  std::vector<double> points;
+  for (int i = 0; i <= 100; ++i) points.insert(points.end(), {2.0 * (reversed ? 100 - i : i), off});
+  return points;
+}
+
+}  // namespace
+
+TEST_CASE("past a ridge of the wall the wire is measured from the ball that it goes on in") {
+  const Tube vessel = stenosis();
+  const Centerline curve = vessel.view(Interpolation::spline);
+  const std::vector<double> radius(101, 0.0);
+  for (const bool reversed : {false, true}) {
+    CAPTURE(reversed);
+    const std::vector<double> points = straight_wire(2.9, reversed);
+    const WirePolyline wire{101, points.data(), radius.data()};
+    // The place that was nearest before the ridge is left behind.
+    REQUIRE(deepest_of_all(curve, wire, 20).depth > 1.0);
+    REQUIRE(deepest_node(curve, points) == doctest::Approx(-0.1).epsilon(0.1));
+    const WallCheck check = check_wall(curve, wire);
+    CHECK_FALSE(check.crossing.crossed());
+    CHECK(check.crossing.deepest.depth == doctest::Approx(-0.1).epsilon(0.1));
+    CHECK(check.dense.depth == doctest::Approx(-0.1).epsilon(0.1));
+    CHECK(max_penetration_dense(curve, wire).depth == doctest::Approx(-0.1).epsilon(0.1));
+  }
+}
+
+TEST_CASE("a wire that leaves the tube beside a ridge is found, by how much it does") {
+  const Tube vessel = stenosis();
+  const Centerline curve = vessel.view(Interpolation::spline);
+  for (const bool reversed : {false, true}) {
+    CAPTURE(reversed);
+    const std::vector<double> points = straight_wire(3.5, reversed);
+    const CrossingCheck check = check_crossing(curve, wire_of(points, 2));
+    CHECK(check.crossed());
+    CHECK(check.deepest.depth == doctest::Approx(0.5).epsilon(1e-2));
+    CHECK(check.exit.depth > check.allowance);
+  }
+}

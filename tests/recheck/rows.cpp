@@ -88,7 +88,7 @@ struct ContactPlan {
   std::string name, type;
   const CurveModel *wire = nullptr, *vessel = nullptr;
   int vessel_index = 0;
-  bool outside = false;
+  bool outside = false, spline = true;
   int per_segment = 1;
 };
 
@@ -158,8 +158,9 @@ WallPoint row_point(const ContactPlan& plan, const Wall& wall, const Place& plac
   const double followed = near_sample(following, place).sigma;
   if (!std::isfinite(named_arc)) return wall.lowest(x, radius, followed, window);
   const WallPoint named = wall.descend(x, radius, sigma_of_arc(*plan.vessel, named_arc));
-  const double start = following.crossed() ? named.sigma : wall.descend(x, radius, followed).sigma;
-  const WallPoint found = wall.lowest(x, radius, start, window);
+  const WallPoint start = following.crossed() ? named : wall.descend(x, radius, followed);
+  const bool by_limb = plan.type == "node-wise-contact" && !plan.outside && plan.spline;
+  const WallPoint found = by_limb ? wall.past_ridges(x, radius, start) : wall.lowest(x, radius, start.sigma, window);
   return std::abs(named.gap - found.gap) <= tie ? named : found;
 }
 
@@ -223,6 +224,7 @@ ContactPlan contact_plan(const Json& constraint, const RowWork& work, std::size_
   plan.wire = &(*work.models)[at(work.result->index(constraint.at("on").at(0).get<std::string>()))];
   plan.vessel = &(*work.models)[at(work.result->index(constraint.at("on").at(1).get<std::string>()))];
   plan.outside = constraint.value("side", "inside") == "outside";
+  plan.spline = constraint.value("centerline", "spline") == "spline";
   plan.per_segment = rows_per_segment(constraint, plan, rows);
   return plan;
 }
@@ -295,7 +297,13 @@ Following follow(const CurveModel& wire, const CurveModel& vessel) {
   for (int k = 0; k <= w.edges() * samples_per_segment; ++k) {
     const int edge = std::min(k / samples_per_segment, w.edges() - 1);
     const double t = static_cast<double>(k - edge * samples_per_segment) / samples_per_segment;
-    const WallPoint point = wall.descend(chord_point(w, edge, t), radius_along(w, edge, t), sigma);
+    const Point x = chord_point(w, edge, t);
+    const double radius = radius_along(w, edge, t);
+    WallPoint point = wall.descend(x, radius, sigma);
+    if (point.depth > 0.0) {
+      const WallPoint beyond = wall.past_ridges(x, radius, point);
+      if (beyond.depth < point.depth) point = beyond;
+    }
     sigma = point.sigma;
     out.samples.push_back(point);
     if (!(point.depth <= out.depth.value)) {
@@ -315,8 +323,7 @@ void add_contact_rows(const Json& constraint, const Following& following, std::s
   const std::vector<Place> places = by_segment ? segment_places(plan, work.result->contacts, entry) : node_places(plan);
   const std::vector<double>& mu = multipliers(work, name, places.size());
   const Curve& vessel = plan.vessel->curve();
-  const Wall wall(vessel.position, vessel.radius, constraint.value("centerline", "spline") == "spline", form,
-                  plan.outside);
+  const Wall wall(vessel.position, vessel.radius, plan.spline, form, plan.outside);
   for (std::size_t r = 0; r < places.size(); ++r) {
     const ContactEntry& named = work.result->contacts.at(entry++);
     const WallPoint point = row_point(plan, wall, places[r], following, named.vessel_arc);

@@ -183,6 +183,59 @@ WallPoint Wall::lowest(const Point& x, double wire_radius, double near, int wind
   return best;
 }
 
+/// Whether a ball as wide as any could meet the one at `from` if its center were at `to`.
+bool Wall::within_reach(double wire_radius, double from, double to) const {
+  int segment = 0;
+  double u = 0.0;
+  split(to, segment, u);
+  const Point there = center(segment, u).value;
+  split(from, segment, u);
+  const double widest = *std::max_element(control_radius_.begin(), control_radius_.end());
+  const double reach = clearance(lumen(segment, u).value, wire_radius) + clearance(widest, wire_radius);
+  return norm(there - center(segment, u).value) <= reach;
+}
+
+/// Whether every point of the centerline between two places is in the ball of one of them, at ten points per segment.
+bool Wall::one_limb(double wire_radius, double from, double to) const {
+  int segment = 0;
+  double u = 0.0;
+  split(from, segment, u);
+  const Point p = center(segment, u).value;
+  const double p_radius = clearance(lumen(segment, u).value, wire_radius);
+  split(to, segment, u);
+  const Point q = center(segment, u).value;
+  const double q_radius = clearance(lumen(segment, u).value, wire_radius);
+  const int parts = 1 + static_cast<int>(10.0 * std::abs(to - from));
+  for (int k = 0; k <= parts; ++k) {
+    split(from + (to - from) * k / parts, segment, u);
+    const Point between = center(segment, u).value;
+    if (norm(between - p) > p_radius && norm(between - q) > q_radius) return false;
+  }
+  return norm(p - q) <= p_radius + q_radius;
+}
+
+WallPoint Wall::past_ridges(const Point& x, double wire_radius, const WallPoint& place) const {
+  constexpr double equal = 1e-8;  // mm
+  WallPoint now = place;
+  for (bool moved = true; moved;) {
+    moved = false;
+    WallPoint best = now;
+    for (const int direction : {1, -1}) {
+      for (int k = 1;; ++k) {
+        const double sigma = now.sigma + 0.25 * direction * k;
+        // Balls that are not even near each other hold nothing together.
+        if (sigma < 0.0 || sigma > segments() || !within_reach(wire_radius, now.sigma, sigma)) break;
+        const WallPoint here = at(x, wire_radius, sigma), ahead = at(x, wire_radius, sigma + 0.25 * direction);
+        if (here.gap > at(x, wire_radius, sigma - 0.25 * direction).gap || here.gap > ahead.gap) continue;
+        const WallPoint found = descend(x, wire_radius, sigma);
+        if (found.gap < best.gap - equal && one_limb(wire_radius, now.sigma, found.sigma)) best = found;
+      }
+    }
+    if (best.gap < now.gap) now = best, moved = true;
+  }
+  return now;
+}
+
 double Wall::lumen_radius(double sigma) const {
   int segment = 0;
   double u = 0.0;

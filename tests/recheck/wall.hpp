@@ -44,6 +44,11 @@ class Wall {
   WallPoint descend(const Point& x, double wire_radius, double start) const;
   /// The lowest local minimum within `window` segments of `near`; of the whole vessel for a negative window.
   WallPoint lowest(const Point& x, double wire_radius, double near, int window) const;
+  /// Where the wall has ridges the lowest minimum jumps from one place to another: the lowest one that can be reached
+  /// from `place` (inside of the tube) by steps between places whose two balls hold the centerline between them;
+  /// `place` where there is none lower. The union of two balls that both hold x has no wall between x and any point of
+  /// it, so that such places are of one limb.
+  WallPoint past_ridges(const Point& x, double wire_radius, const WallPoint& place) const;
   /// At a given σ.
   WallPoint at(const Point& x, double wire_radius, double sigma) const;
 
@@ -60,6 +65,8 @@ class Wall {
   Jet<double> lumen(int segment, double u) const;
   double clearance(double lumen_radius, double wire_radius) const;
   Local gap(const Point& x, double wire_radius, int segment, double u) const;
+  bool within_reach(double wire_radius, double from, double to) const;
+  bool one_limb(double wire_radius, double from, double to) const;
   double minimise(const Point& x, double wire_radius, int segment, double u) const;
 
   std::size_t nodes_;
