@@ -20,11 +20,11 @@ RowPoint locate(const Row& row, const Wall& wall, const double* wire, contact::W
   const int dimension = wall.centerline.dimension;
   point.wire.nodes = row.nodes;
   point.wire.points = wire + row.node * dimension;
-  point.wire.t = row.extremal && row.midway ? 0.5 : row.t;
+  point.wire.t = row.extremal && row.midway ? row.part.middle() : row.t;
   for (int k = 0; k < 2; ++k) point.wire.radius[k] = sign(wall) * row.radius[k];
   if (row.extremal && !row.midway) {
     const contact::ChordExtremum extremum =
-        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma, chord_margin);
+        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma, row.part);
     point.wire.t = extremum.t;
     point.wire.extremal = extremum.interior;
     point.closest = extremum.closest;
@@ -101,7 +101,7 @@ void refer_to(Row& row, const Wall& wall, const double* wire, contact::Window wi
   for (double& sigma : row.end_sigma) sigma = row.sigma;
   if (row.extremal) {
     const contact::ChordExtremum extremum =
-        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma, chord_margin);
+        contact::chord_extremum(wall.centerline, point.wire, wall.form, sign(wall), window, row.sigma, row.part);
     row.bend = extremum.bend;
     std::copy_n(extremum.end_sigma, 2, row.end_sigma);
   }

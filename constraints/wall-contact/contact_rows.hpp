@@ -28,7 +28,8 @@ struct Row {
   int node = 0, nodes = 1;    ///< reads `nodes` wire nodes from `node` on
   double t = 0.0;             ///< x = (1 − t) p_node + t p_{node+1}, at the accepted state
   bool extremal = false;      ///< t is searched for: where the gap is largest between the nodes …
-  bool midway = false;        ///< … unless the wall bends away there: then t = 1/2
+  contact::ChordPart part;    ///< of the chord: where it is searched for
+  bool midway = false;        ///< … unless the wall bends away there: then t is the part's middle
   double bend = 0.0;          ///< how much it does, at the accepted state (ChordExtremum), mm
   bool searches = true;       ///< σ is searched for; otherwise it is given
   double radius[2] = {};      ///< of the wire at its nodes, mm
@@ -52,8 +53,8 @@ struct RowPoint {
   double gap = 0.0;  ///< ≤ 0 on the right side, mm
 };
 
-/// A chord's own row keeps this share of a segment away from its nodes, which have rows of their own: no two rows
-/// coincide. What that may hide of the chord between is a few 1e-8 of its height above the nodes.
+/// A row that searches keeps this share of a segment away from nodes and stations, which have rows of their own: no two
+/// rows coincide. What that may hide of the chord between is a few 1e-8 of its height above the nodes.
 inline constexpr double chord_margin = 1e-4;
 
 /// `wire`: all its node positions. `window_edge` in the closest point where that is not in the window.

@@ -32,7 +32,8 @@ constexpr ParameterDeclaration rows_key{
     .default_text = "1",
     .description =
         "rows per wire segment, evenly spaced; \"auto\": as many as keep rows closer than 0.65 of the "
-        "smallest clearance; without effect with segment-wise-contact, which finds the place itself",
+        "smallest clearance. With segment-wise-contact the parts of a segment that have a row of their own, where the "
+        "gap is largest, \"auto\" being 1",
     .lower = 1.0,
     .upper = 1000.0,
     .choices = "auto"};
@@ -91,7 +92,7 @@ class WallContact final : public Constraint {
       describe(out);
       out.inside_lumen = !outside_;
       warn(out);
-      if (discretisation == Discretisation::segment_wise) {
+      if (discretisation == Discretisation::segment_wise && rows_per_segment_ <= 0.0) {
         out.without_effect.push_back({"rows-per-segment", "segment-wise-contact finds the place of the largest gap"});
       }
       if (discretisation == Discretisation::same_index) {
@@ -322,34 +323,43 @@ class WallContact final : public Constraint {
 
   double longest_edge() const { return *std::max_element(wire_.edge_length, wire_.edge_length + wire_.nodes - 1); }
 
-  /// Rows per segment; 0: one at its first node, and one that finds its place itself.
+  /// Rows at fixed places per segment, its first node's among them.
   int stations() const {
-    if (discretisation == Discretisation::segment_wise) return 0;
+    if (discretisation == Discretisation::segment_wise) return std::max(1, static_cast<int>(rows_per_segment_));
     if (rows_per_segment_ > 0.0) return static_cast<int>(rows_per_segment_);
     return std::max(1, static_cast<int>(std::ceil(longest_edge() / (automatic_spacing * smallest_clearance_))));
   }
 
-  /// Rows at every place that may carry one, in order along the wire, each segment's after its first node's.
+  /// Rows at every place that may carry one, in order along the wire, each segment's after its first node's. A row that
+  /// searches stands between each two fixed places.
   /// `sigma`: where each node is bound to, at the state of `wall` and `wire`.
   void make_rows(const std::vector<double>& sigma, const Wall& wall, const double* wire) {
     const int per_segment = stations();
+    const bool search = discretisation == Discretisation::segment_wise;
     rows_.clear();
     for (int i = 0; i < wire_.nodes; ++i) {
-      if (!position_held(wire_, i)) add_row(i, 1, 0.0, sigma, wall, wire);
+      if (!position_held(wire_, i)) add_row(i, 1, {0.0, 0.0}, sigma, wall, wire);
       if (i == wire_.nodes - 1 || (position_held(wire_, i) && position_held(wire_, i + 1))) continue;
-      for (int k = 1; k < per_segment; ++k) add_row(i, 2, static_cast<double>(k) / per_segment, sigma, wall, wire);
-      if (per_segment == 0) add_row(i, 2, 0.5, sigma, wall, wire);
+      for (int k = 0; k < per_segment; ++k) {
+        const double low = static_cast<double>(k) / per_segment, high = static_cast<double>(k + 1) / per_segment;
+        if (k > 0) add_row(i, 2, {low, low}, sigma, wall, wire);
+        if (search) add_row(i, 2, {low + chord_margin, high - chord_margin}, sigma, wall, wire);
+      }
     }
     found_.assign(rows_.size(), {});
   }
 
-  void add_row(int node, int nodes, double t, const std::vector<double>& sigma, const Wall& wall, const double* wire) {
+  /// A row at a place of a segment, or one that looks for its place in a part of it.
+  void add_row(int node, int nodes, contact::ChordPart part, const std::vector<double>& sigma, const Wall& wall,
+               const double* wire) {
     const auto first = static_cast<std::size_t>(node);
+    const double t = part.middle();
     Row row;
     row.node = node;
     row.nodes = nodes;
     row.t = t;
-    row.extremal = nodes == 2 && discretisation == Discretisation::segment_wise;
+    row.part = part;
+    row.extremal = part.low < part.high;
     row.searches = discretisation != Discretisation::same_index;
     row.radius[0] = wire_radius_[first];
     row.radius[1] = nodes == 2 ? wire_radius_[first + 1] : row.radius[0];
@@ -424,7 +434,7 @@ class WallContact final : public Constraint {
   void warn(RowDeclaration& out) const {
     const std::string pair = "contact of '" + std::string(wire_.name) + "' with '" + vessel_.name + "': ";
     const int per_segment = stations();
-    const double spacing = per_segment > 0 ? longest_edge() / per_segment : 0.0;
+    const double spacing = discretisation == Discretisation::segment_wise ? 0.0 : longest_edge() / per_segment;
     const double clearance = smallest_clearance_;
     if (spacing > clearance) {
       out.warnings.push_back(pair + "rows are up to " + number(spacing) +

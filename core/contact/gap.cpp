@@ -16,7 +16,7 @@ constexpr double singular_distance = 1e-9;  // mm; below it the plain distance c
 constexpr double longest_step = 0.5;        // of a segment: a longer one could pass over a minimum
 constexpr int max_steps = 64;               // per segment; bisection alone needs 52
 constexpr int samples_per_segment = 4;      // of a global scan
-constexpr double near_end = 0.5;            // of a chord: a largest gap that stood nearer leaves it there
+constexpr double near_end = 0.5001;         // of a part of a chord: a largest gap that stood nearer leaves it there
 constexpr double bend_that_matters = 0.25;  // of h: with less the middle of a chord stands for its largest gap
 constexpr double least_near = 1e-2;         // mm, and
 constexpr double near_wall = 0.1;           // of the clearance: a chord that is farther away is looked at less closely
@@ -463,7 +463,7 @@ GapShape WirePoint::shape(GapForm form) const noexcept {
 }
 
 ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
-                             double start, double margin) noexcept {
+                             double start, ChordPart part) noexcept {
   struct Sample {
     double t = 0.0, slope = 0.0, second = 0.0;  // of sign·h
     ClosestPoint closest;
@@ -481,7 +481,7 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
     sample.second = sign * d.reduced_second;
     return sample;
   };
-  Sample low = at(margin, start), high = at(1.0 - margin, start);
+  Sample low = at(part.low, start), high = at(part.high, start);
   const double bend = high.slope - low.slope;
   const double end_sigma[2] = {low.closest.at.sigma(), high.closest.at.sigma()};
   const auto answer = [&](const Sample& sample, bool interior) {
@@ -507,12 +507,12 @@ ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, Ga
   };
   if (!rises_and_falls(low, high)) {
     const Sample& end = height(low) >= height(high) ? low : high;
-    const bool leaves_by_end = std::fabs(chord.t - end.t) < near_end;
-    const bool stands = chord.t > margin && chord.t < 1.0 - margin && !leaves_by_end;
+    const bool leaves_by_end = std::fabs(chord.t - end.t) < near_end * (part.high - part.low);
+    const bool stands = chord.t > part.low && chord.t < part.high && !leaves_by_end;
     const auto without = [&] { return answer(stands ? at(chord.t, start) : end, false); };
     if (!(height(end) > -std::max(near_wall * end.closest.clearance, least_near))) return without();
     // A chord that is long for the wall's bends may leave the wall from both ends and come back between.
-    Sample middle = at(0.5, low.closest.at.sigma()), first = low, last = high, other = middle;
+    Sample middle = at(part.middle(), low.closest.at.sigma()), first = low, last = high, other = middle;
     const bool before = usable(middle) && rises_and_falls(first, middle);
     const bool after = usable(other) && rises_and_falls(other, last);
     if (!before && !after) return without();

@@ -94,13 +94,20 @@ struct ChordExtremum {
   ClosestPoint closest;
 };
 
+/// A stretch of a chord, 0 ≤ low < high ≤ 1.
+struct ChordPart {
+  double low = 0.0, high = 1.0;
+
+  double middle() const noexcept { return 0.5 * (low + high); }
+};
+
 /// The largest (`sign` = 1) or least (−1) h along a chord between two nodes: a local maximum between the ends where
 /// there is one, by the slopes there or, where both have one sign, by the cubic through values and slopes; otherwise
 /// where the chord's own t is, so that h stays continuous where that maximum vanishes, or, with t at an end, the larger
 /// end. `start` is σ of the search at both ends. The location is `window_edge` where a closest point leaves
-/// the window. The ends are t = margin and 1 − margin.
+/// the window. The ends are those of `part`, a stretch of the chord's t; `chord.t` lies in it.
 ChordExtremum chord_extremum(const Centerline& curve, const WirePoint& chord, GapForm form, double sign, Window window,
-                             double start, double margin = 0.0) noexcept;
+                             double start, ChordPart part = {}) noexcept;
 
 /// h to second order at a closest point, in z = (wire nodes, nodes of the segment's stencil), by the envelope theorem:
 /// ∇h = φ_z at fixed σ* and t*, ∇²h = φ_zz − φ_zη φ_ηη⁻¹ φ_ηz with η what moves with z: σ at an interior minimum, t at

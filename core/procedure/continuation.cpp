@@ -40,7 +40,10 @@ class Walk {
     solution_ = solve(*session, progress_);
     share_ = 0.0;
     add_point(solution_, 0.0, true);
-    if (solution_.certificate.verdict != Verdict::converged) {
+    if (table_.fallback && solution_.certificate.verdict != Verdict::converged) begin_further_on();
+    if (share_ == 1.0) {
+      path_.reached = true;
+    } else if (solution_.certificate.verdict != Verdict::converged) {
       stop("the solve at its first value ended '" + std::string(verdict_name(solution_.certificate.verdict)) +
            "': " + solution_.certificate.reason);
     } else if (follows()) {
@@ -67,6 +70,28 @@ class Walk {
 
   void stop(const std::string& why) {
     if (path_.reason.empty()) path_.reason = why;
+  }
+
+  /// A fallback is after its last value alone: where its first one has no answer, it begins at the next that has one,
+  /// if there is any.
+  void begin_further_on() {
+    std::string tried = table_.range.text(0.0);
+    for (double share = table_.first_step; share_ == 0.0; share = std::min(share + table_.first_step, 1.0)) {
+      const std::string text = table_.range.text(share);
+      Refusal refusal;
+      Session* session = text != tried && !interrupted() ? family_.at(share, refusal) : nullptr;
+      if (session != nullptr) {
+        Solution found = solve(*session, progress_);
+        if (found.certificate.verdict == Verdict::converged) {
+          share_ = share;
+          solution_ = std::move(found);
+          path_.points.clear();
+          add_point(solution_, 0.0, true);
+        }
+      }
+      tried = text;
+      if (share == 1.0 || !path_.reason.empty()) return;
+    }
   }
 
   bool interrupted() {
@@ -118,7 +143,7 @@ class Walk {
 
   void follow() {
     PathState state;
-    state.share = 0.0;
+    state.share = share_;
     state.q = solution_.q;
     state.multipliers = solution_.multipliers;
     if (Status status = follower_.settle(state); !status.ok()) return step_by_solver();
@@ -292,10 +317,24 @@ class Walk {
       }
       step = 0.5 * std::min(step, target - share_);
       if (step >= table_.smallest_step && table_.range.text(share_ + step) != table_.range.text(share_)) continue;
+      if (table_.fallback && family_.range().whole && answers_from_the_start()) break;
       return stop("no equilibrium was found beyond " + value_text(table_.range, share_) +
                   " with the smallest step: " + failure_);
     }
     path_.reached = true;
+  }
+
+  /// Another mesh or other rows may have an answer from the start where the point before does not lead to one.
+  bool answers_from_the_start() {
+    Refusal refusal;
+    Session* session = family_.at(1.0, refusal);
+    if (session == nullptr) return false;
+    Solution found = solve(*session, progress_);
+    if (found.certificate.verdict != Verdict::converged) return false;
+    solution_ = std::move(found);
+    share_ = 1.0;
+    add_point(solution_, share_, true);
+    return true;
   }
 
   bool solve_at(double target) {

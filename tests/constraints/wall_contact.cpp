@@ -64,6 +64,8 @@ type = "ipopt"
 TEST_CASE("how many rows each discretisation has") {
   CHECK(rows_of(with_contact("node-wise-contact")) == 5);  // seven nodes, two of them held
   CHECK(rows_of(with_contact("segment-wise-contact")) == 5 + 6);
+  CHECK(rows_of(with_contact("segment-wise-contact", "rows-per-segment = \"auto\"")) == 5 + 6);
+  CHECK(rows_of(with_contact("segment-wise-contact", "rows-per-segment = 3")) == 5 + 6 * (3 + 2));
   CHECK(rows_of(with_contact("node-wise-contact", "rows-per-segment = 3")) == 5 + 6 * 2);
   SmallScene free = with_contact("segment-wise-contact");
   free.wire_ends = R"(["free", "free"])";
@@ -103,7 +105,7 @@ TEST_CASE("what a contact cannot be is refused in words") {
 
 TEST_CASE("keys that a discretisation does not feel are allowed, and said to be idle") {
   const auto idle = [](const SmallScene& scene) { return session_of(scene)->scene->without_effect; };
-  CHECK(any_contains(idle(with_contact("segment-wise-contact", "rows-per-segment = 2")),
+  CHECK(any_contains(idle(with_contact("segment-wise-contact", "rows-per-segment = \"auto\"")),
                      "'rows-per-segment' of constraint 'lumen' has no effect: segment-wise-contact finds the place of "
                      "the largest gap"));
   SmallScene equal = with_contact("same-index-contact");

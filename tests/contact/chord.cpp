@@ -186,6 +186,32 @@ TEST_CASE("a row whose largest gap vanishes between the ends keeps its place, an
   CHECK(left > 10);
 }
 
+TEST_CASE("the largest gap of a part of a chord lies in it, and the largest of all parts is the chord's") {
+  std::mt19937 random(17);
+  int interior = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Chord chord = chord_near_wall(trial % 2 == 0 ? 2 : 3, 0.8, 2.0 + 0.02 * trial, 0.8, random);
+    const ChordExtremum whole_chord = chord.extremum();
+    if (!whole_chord.interior) continue;
+    REQUIRE(whole_chord.closest.gap != 0.0);
+    double largest = std::max(chord.gap(0.0), chord.gap(1.0));
+    for (int k = 0; k < 4; ++k) {
+      const ChordPart part{0.25 * k, 0.25 * (k + 1)};
+      WirePoint point = chord.point();
+      point.t = part.middle();
+      const ChordExtremum found = chord_extremum(chord.tube.view(spline), point, chord.form, 1.0,
+                                                 whole(chord.tube.view(spline)), chord.start, part);
+      CHECK(found.t >= part.low);
+      CHECK(found.t <= part.high);
+      CHECK(found.interior == (whole_chord.t > part.low && whole_chord.t < part.high));
+      largest = std::max({largest, chord.gap(part.low), found.closest.gap});
+      interior += found.interior ? 1 : 0;
+    }
+    CHECK(largest == doctest::Approx(whole_chord.closest.gap).epsilon(1e-10));
+  }
+  CHECK(interior > 10);
+}
+
 TEST_CASE("gradient and Hessian of a chord's extreme gap agree with differences") {
   std::mt19937 random(11);
   int interior = 0, at_end = 0;

@@ -39,6 +39,7 @@ END_MOVE = 0.3       # of the smallest clearance
 END_TURN = math.radians(10.0)
 ROLLER_TISSUE = 100.0  # mm²: times the foundation's modulus, the tension that an end on a roller may bear
 CONTINUED_FROM = 0.05
+CONTINUED_PARTS = (4, 8)  # of a segment, each with a row of its own
 
 
 class Stream:
@@ -371,7 +372,11 @@ def draw(seed, number, group="posed", continuation=False):
         constraint.append(("rows-per-segment", rows))
     parts.append(table("[[constraint]]", constraint))
     parts.append(table("[solver]", [("type", "interior-point")]))
-    if continuation and not free_tip and tension > CONTINUED_FROM:
+    if continuation and contact == "segment-wise":
+        first, last = CONTINUED_PARTS
+        parts.append(table("[continuation]", [("path", "constraint.lumen.rows-per-segment"), ("from", first), ("to", last),
+                                              ("first-step", 1), ("when", "fallback")]))
+    elif continuation and not free_tip and tension > CONTINUED_FROM:
         parts.append(table("[continuation]", [("path", "energy.axial-tension.tension"),
                                               ("from", quantity(CONTINUED_FROM, "N")), ("to", quantity(tension, "N")),
                                               ("when", "fallback")]))

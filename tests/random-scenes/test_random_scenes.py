@@ -79,12 +79,14 @@ class Scenes(unittest.TestCase):
                             ("span", 2), ("lumen", 2), ("load", 3), ("rows", 2)):
             self.assertGreaterEqual(len({scene.axes[axis] for scene in self.drawn}), least, axis)
 
-    def test_a_continuation_goes_to_the_scenes_tension(self):
+    def test_a_continuation_goes_to_the_scenes_tension_or_to_more_rows_of_a_segment(self):
         plain = sum("[continuation]" in scene.text for scene in self.drawn)
         self.assertEqual(plain, 0)
         walked = [drawing.draw(3, number, continuation=True) for number in range(SCENES)]
         self.assertEqual(sum("[continuation]" in scene.text for scene in walked),
-                         sum(scene.axes["tension_N"] > 0.05 for scene in walked))
+                         sum(scene.axes["tension_N"] > 0.05 or scene.axes["contact"] == "segment-wise" for scene in walked))
+        self.assertTrue(all("rows-per-segment" in scene.text for scene in walked
+                            if scene.axes["contact"] == "segment-wise"))
 
     def test_what_is_taken_away(self):
         for number, flaw in enumerate(drawing.UNPOSED):

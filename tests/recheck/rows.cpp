@@ -120,8 +120,8 @@ std::vector<Place> node_places(const ContactPlan& plan) {
   return out;
 }
 
-/// Rows at nodes that are not wholly held, each followed by that of its segment, which stands where `contacts` says.
-/// Throws where a segment has none.
+/// Rows at nodes that are not wholly held, each followed by those of its segment: one in each of its parts, which
+/// stands where `contacts` says, and one between each two parts. Throws where a segment has none.
 std::vector<Place> segment_places(const ContactPlan& plan, const std::vector<ContactEntry>& entries,
                                   std::size_t first) {
   const Curve& wire = plan.wire->curve();
@@ -133,7 +133,13 @@ std::vector<Place> segment_places(const ContactPlan& plan, const std::vector<Con
       ++row;
     }
     if (i == wire.edges() || (wire.wholly_held(i) && wire.wholly_held(i + 1))) continue;
-    out.push_back({i, entries.at(row++).coordinate - i});
+    for (int k = 0; k < plan.per_segment; ++k) {
+      if (k > 0) {
+        out.push_back({i, static_cast<double>(k) / plan.per_segment});
+        ++row;
+      }
+      out.push_back({i, entries.at(row++).coordinate - i});
+    }
   }
   for (const Place& place : out) {
     if (place.t >= -on_node && place.t <= 1.0 + on_node) continue;
@@ -205,8 +211,9 @@ double chord_maximum(const ContactPlan& plan, const Wall& wall, const Following&
 }
 
 int rows_per_segment(const Json& constraint, const ContactPlan& plan, std::size_t rows) {
-  if (plan.type == "segment-wise-contact" || !constraint.contains("rows-per-segment")) return 1;
+  if (!constraint.contains("rows-per-segment")) return 1;
   if (constraint["rows-per-segment"].is_number()) return constraint["rows-per-segment"].get<int>();
+  if (plan.type == "segment-wise-contact") return 1;
   ContactPlan one = plan;
   for (one.per_segment = 1; one.per_segment < 1000; ++one.per_segment) {
     if (node_places(one).size() >= rows) return one.per_segment;

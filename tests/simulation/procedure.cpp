@@ -92,6 +92,27 @@ TEST_CASE("a walk that is a fallback is taken where the cold solve fails, which 
   }
 }
 
+TEST_CASE("a fallback whose first value has no answer begins at the next that has one") {
+  Simulation simulation = walked("solver.max-iterations", "1", "101");
+  simulation.set("continuation.when", "fallback");
+  simulation.set("solver.max-iterations", 2);
+  const SimulationResult result = simulation.solve(plugins());
+  REQUIRE(result.ok());
+  CHECK_MESSAGE(result.converged(), result.reason());
+  CHECK(contains(result.warnings().back(), "[continuation] came to"));
+  const NumberTable parameter = result.numbers("path.parameter").value;
+  REQUIRE(parameter.rows > 0);
+  CHECK(parameter(0) > 1.0);
+  CHECK(parameter(parameter.rows - 1) == 101.0);
+  CHECK(result.text("path.0.verdict").value == "converged");
+
+  simulation.set("continuation.when", "always");
+  const SimulationResult walk = simulation.solve(plugins());
+  REQUIRE(walk.ok());
+  CHECK_FALSE(walk.converged());
+  CHECK(contains(walk.reason(), "the solve at its first value ended 'stalled'"));
+}
+
 TEST_CASE("a walk that cannot arrive says where it ended") {
   Simulation simulation = walked(tension, "10 N", "-40 N");
   simulation.set("continuation.max-points", 60);
