@@ -339,6 +339,14 @@ class Walk {
 
   bool solve_at(double target) {
     Refusal refusal;
+    // After a step that failed the session is still at the value of that step, with other rows or nodes than the
+    // point's.
+    if (family_.share() != share_) {
+      if (const Status status = follower_.place(share_, solution_.q); !status.ok()) {
+        failure_ = status.text;
+        return false;
+      }
+    }
     const SessionRecord record = record_of(family_.session(), "{}");
     Readings readings;
     read_solution(family_.session(), solution_, readings);
