@@ -17,8 +17,6 @@ constexpr double farthest_share = 20.0;  // a path that has come so far does not
 constexpr double jump = 2.0;  // of a step's predicted length: a solver that lands farther off has left the path
 constexpr int most_halvings = 60;
 
-std::string value_text(const ValueRange& range, double share) { return range.text(share); }
-
 class Walk {
  public:
   Walk(const CompositionRequest& request, std::unique_ptr<Session> session, const ParameterFamily::Build& build,
@@ -39,7 +37,7 @@ class Walk {
     if (session == nullptr) return refused(refusal);
     solution_ = solve(*session, progress_);
     share_ = 0.0;
-    add_point(solution_, 0.0, true);
+    add_point(0.0, true);
     if (table_.fallback && solution_.certificate.verdict != Verdict::converged) begin_further_on();
     if (share_ == 1.0) {
       path_.reached = true;
@@ -57,7 +55,7 @@ class Walk {
 
  private:
   bool follows() {
-    return table_.arclength && !family_.range().whole && family_.session().composition.enforcement.name == "kkt";
+    return table_.arclength && !family_.range().whole && session().composition.enforcement.name == "kkt";
   }
   Session& session() { return family_.session(); }
 
@@ -86,7 +84,7 @@ class Walk {
           share_ = share;
           solution_ = std::move(found);
           path_.points.clear();
-          add_point(solution_, 0.0, true);
+          add_point(0.0, true);
         }
       }
       tried = text;
@@ -108,14 +106,14 @@ class Walk {
     return true;
   }
 
-  void add_point(const Solution& solution, double arclength, bool by_solver) {
+  void add_point(double arclength, bool by_solver) {
     PathPoint point;
     point.share = share_;
     point.parameter = table_.range.at(share_);
     point.arclength = arclength;
-    point.iterations = solution.solver.iterations;
+    point.iterations = solution_.solver.iterations;
     point.by_solver = by_solver;
-    point.state = summarise(family_.session(), solution);
+    point.state = summarise(session(), solution_);
     // Of a point the document has figures alone.
     point.state.readings.curves.clear();
     point.state.readings.contacts.clear();
@@ -134,11 +132,11 @@ class Walk {
     found.iterations = state.iterations;
     std::vector<std::string> warnings = std::move(solution_.warnings);
     const std::optional<StartOrigin> origin = solution_.start;
-    solution_ = certified(family_.session(), std::move(found));
+    solution_ = certified(session(), std::move(found));
     solution_.warnings = std::move(warnings);
     solution_.start = origin;
     share_ = state.share;
-    add_point(solution_, arclength, by_solver);
+    add_point(arclength, by_solver);
   }
 
   void follow() {
@@ -180,12 +178,22 @@ class Walk {
       }
       step *= 0.5;
       if (step < table_.smallest_step) {
-        stop("no equilibrium was found beyond " + value_text(table_.range, state.share) + ": " + status.text +
+        stop("no equilibrium was found beyond " + table_.range.text(state.share) + ": " + status.text +
              " with the smallest step");
         return false;
       }
     }
     return false;
+  }
+
+  /// The composition's solver at the family's value, from a state of another value.
+  Solution solve_from(const PathState& state) {
+    Start start;
+    start.q = state.q;
+    hold_ends(*session().scene, start.q);
+    start.multipliers = state.multipliers;
+    start.only = true;
+    return solve(session(), progress_, &start);
   }
 
   /// The composition's solver from the predicted point, where the path is stable and rises. It may not land far off.
@@ -198,12 +206,7 @@ class Walk {
     if (static_cast<int>(delta.size()) != session().assembly->unknowns()) return false;
     for (double& entry : delta) entry *= step;
     session().assembly->retract(state.q, delta, guess.q);
-    hold_ends(*session().scene, guess.q);
-    Start start;
-    start.q = guess.q;
-    start.multipliers = state.multipliers;
-    start.only = true;
-    const Solution found = solve(family_.session(), progress_, &start);
+    const Solution found = solve_from(guess);
     if (found.certificate.verdict != Verdict::converged) return false;
     if (follower_.distance(found.q, guess.q) > jump * follower_.distance(guess.q, state.q) + table_.smallest_step) {
       return false;
@@ -216,31 +219,21 @@ class Walk {
 
   /// At the last value exactly, by the composition's solver.
   void arrive(const PathState& before, const PathState& beyond) {
-    PathState last = before;
     const double part = (1.0 - before.share) / (beyond.share - before.share);
+    PathState last = part > 0.5 ? beyond : before;  // from the nearer of the two
     last.share = 1.0;
-    if (part == 1.0) last = beyond;
     const double gone = part * follower_.distance(before.q, beyond.q);
-    // From the nearer of the two, along the path's direction there.
-    if (part > 0.5 && part < 1.0) {
-      last.q = beyond.q;
-      last.multipliers = beyond.multipliers;
-    }
     const Status settled = follower_.settle(last, &before);
-    Start start;
-    start.q = last.q;
-    start.multipliers = last.multipliers;
-    start.only = true;
     Refusal refusal;
-    Session* session = family_.at(1.0, refusal);
-    if (session == nullptr) return stop("the composition refuses its last value: " + refusal.text());
-    hold_ends(*session->scene, start.q);
-    Solution found = solve(*session, progress_, &start);
+    if (family_.at(1.0, refusal) == nullptr) {
+      return stop("the composition refuses its last value: " + refusal.text());
+    }
+    Solution found = solve_from(last);
     const bool stays = follower_.distance(found.q, last.q) <= 1e-6 + jump * gone;
     if (found.certificate.verdict == Verdict::converged && (stays || !settled.ok())) {
       share_ = 1.0;
       solution_ = std::move(found);
-      add_point(solution_, path_.points.back().arclength + gone, true);
+      add_point(path_.points.back().arclength + gone, true);
       path_.reached = true;
     } else if (settled.ok()) {
       keep(last, path_.points.back().arclength + gone, false);
@@ -294,7 +287,7 @@ class Walk {
       double energy = 0.0;
       ProblemEvaluation wanted;
       wanted.energy = &energy;
-      if (family_.session().assembly->evaluate(there.q, wanted).ok()) found.energy = energy;
+      if (session().assembly->evaluate(there.q, wanted).ok()) found.energy = energy;
     }
     path_.critical.push_back(std::move(found));
   }
@@ -318,7 +311,7 @@ class Walk {
       step = 0.5 * std::min(step, target - share_);
       if (step >= table_.smallest_step && table_.range.text(share_ + step) != table_.range.text(share_)) continue;
       if (table_.fallback && family_.range().whole && answers_from_the_start()) break;
-      return stop("no equilibrium was found beyond " + value_text(table_.range, share_) +
+      return stop("no equilibrium was found beyond " + table_.range.text(share_) +
                   " with the smallest step: " + failure_);
     }
     path_.reached = true;
@@ -333,7 +326,7 @@ class Walk {
     if (found.certificate.verdict != Verdict::converged) return false;
     solution_ = std::move(found);
     share_ = 1.0;
-    add_point(solution_, share_, true);
+    add_point(share_, true);
     return true;
   }
 
@@ -347,10 +340,9 @@ class Walk {
         return false;
       }
     }
-    const SessionRecord record = record_of(family_.session(), "{}");
     Readings readings;
-    read_solution(family_.session(), solution_, readings);
-    const CarriedState carried = carry(record, solution_, readings, "the point before");
+    read_solution(session(), solution_, readings);
+    const CarriedState carried = carry(session(), solution_, readings, "the point before");
     Session* session = family_.at(target, refusal);
     if (session == nullptr) {
       failure_ = refusal.text();
@@ -371,7 +363,7 @@ class Walk {
     }
     solution_ = std::move(found);
     share_ = target;
-    add_point(solution_, share_, true);
+    add_point(share_, true);
     return true;
   }
 
@@ -379,10 +371,10 @@ class Walk {
   void mark_unfinished() {
     follower_.place(share_, solution_.q);
     Certificate& certificate = solution_.certificate;
-    const std::string reached = value_text(table_.range, share_);
+    const std::string reached = table_.range.text(share_);
     if (certificate.verdict == Verdict::converged) certificate.verdict = Verdict::stalled;
     certificate.reason = "the walk of '" + table_.path + "' ended at " + reached + " on its way to " +
-                         value_text(table_.range, 1.0) + ": " + path_.reason;
+                         table_.range.text(1.0) + ": " + path_.reason;
   }
 
   const ContinuationTable table_;

@@ -168,17 +168,6 @@ Status PathFollower::rates(const PathState& state) {
   return status.ok() ? evaluate(state) : status;
 }
 
-double PathFollower::residual(const PathState& state) const {
-  const Assembly& problem = assembly();
-  std::vector<double> lagrangian;
-  lagrangian_gradient(state.multipliers, lagrangian);
-  double worst = 0.0;
-  for (std::size_t u = 0; u < lagrangian.size(); ++u) {
-    worst = std::max(worst, std::fabs(lagrangian[u]) / problem.stationarity_scale()[u]);
-  }
-  return worst;
-}
-
 Status PathFollower::correct(PathState& state, const Closing& closing) {
   std::vector<double> right, row_right, delta, lambda, delta_rate, lambda_rate, moved;
   bool have_rates = false;
@@ -223,11 +212,8 @@ Status PathFollower::correct(PathState& state, const Closing& closing) {
     held_before = held_;
 
     if (closing.from != nullptr && !have_rates) {
-      const std::vector<char> held = held_;
       if (Status status = rates(state); !status.ok()) return status;
-      held_ = held;
       have_rates = true;
-      if (gradient_rate_.size() != n) return Status::failure(Code::unsupported, "the value changes what is unknown");
     }
     if (Status status = factor(state); !status.ok()) return status;
     if (!system_.factor({hessian_, jacobian_, softness_, 0.0}).exists) {
@@ -265,9 +251,7 @@ Status PathFollower::correct(PathState& state, const Closing& closing) {
 Status PathFollower::find_direction(PathState& state, const PathState* before) {
   if (Status status = evaluate(state); !status.ok()) return status;
   choose_active(state);
-  const std::vector<char> held = held_;
   if (Status status = rates(state); !status.ok()) return status;
-  held_ = held;
   if (Status status = factor(state); !status.ok()) return status;
   const kkt::KktSystem::Outcome outcome = system_.factor({hessian_, jacobian_, softness_, 0.0});
   if (!outcome.exists) return Status::failure(Code::failed, "the system is singular");

@@ -63,7 +63,6 @@ class PathFollower {
   Status rates(const PathState& state);
   Status correct(PathState& state, const Closing& closing);
   Status find_direction(PathState& state, const PathState* before);
-  double residual(const PathState& state) const;
   void measure_nodes();
   double along(const std::vector<double>& motion, const std::vector<double>& other) const;
   double along_displacement(const std::vector<double>& motion, const std::vector<double>& from,
