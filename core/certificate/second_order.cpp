@@ -11,6 +11,7 @@
 #include "core/certificate/activity.hpp"
 #include "core/certificate/neutral_modes.hpp"
 #include "core/check/unknowns.hpp"
+#include "core/composition/nearest.hpp"
 #include "core/kkt/kkt_system.hpp"
 
 namespace bowstring {
@@ -44,12 +45,6 @@ std::string number(double value) {
 
 std::string counted(int count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
-}
-
-std::string joined(const std::vector<std::string>& texts, const char* between) {
-  std::string out;
-  for (const std::string& text : texts) out += (out.empty() ? "" : between) + text;
-  return out;
 }
 
 /// The lower triangle of the Hessian, and sums with it.
@@ -382,9 +377,10 @@ class Judge {
     out_.deciding_rows = weak_;
     std::vector<std::string> rows;
     for (const int r : weak_) rows.push_back(std::to_string(r));
-    conclude(Curvature::degenerate,
-             std::string("curvature is ") + (strong.negative > 0 ? "negative" : "zero") +
-                 " where rows open that touch and carry nothing, and positive while they hold: " + joined(rows, ", "));
+    conclude(
+        Curvature::degenerate,
+        std::string("curvature is ") + (strong.negative > 0 ? "negative" : "zero") +
+            " where rows open that touch and carry nothing, and positive while they hold: " + comma_separated(rows));
   }
 
   Assembly& assembly_;

@@ -93,10 +93,12 @@ std::string did_you_mean(const std::vector<std::string>& names) {
   return names.empty() ? "" : "did you mean " + quoted_alternatives(names) + "?";
 }
 
-std::string comma_separated(const std::vector<std::string>& names) {
+std::string joined(const std::vector<std::string>& texts, const char* between) {
   std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) text += (i > 0 ? ", " : "") + names[i];
+  for (std::size_t i = 0; i < texts.size(); ++i) text += (i > 0 ? between : "") + texts[i];
   return text;
 }
+
+std::string comma_separated(const std::vector<std::string>& names) { return joined(names, ", "); }
 
 }  // namespace bowstring

@@ -18,6 +18,9 @@ std::string did_you_mean(const std::vector<std::string>& names);
 /// "'a', 'b' or 'c'" for choices in a message.
 std::string quoted_alternatives(const std::vector<std::string>& names);
 
+/// "a; b; c" with "; " between.
+std::string joined(const std::vector<std::string>& texts, const char* between);
+
 /// "a, b, c".
 std::string comma_separated(const std::vector<std::string>& names);
 

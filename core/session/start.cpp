@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/composition/nearest.hpp"
 #include "core/curve/arc_length.hpp"
 #include "core/model/carried_curve.hpp"
 #include "core/model/manifold.hpp"
@@ -228,12 +229,6 @@ class CurveTaking {
   const CarriedState& carried_;
 };
 
-std::string joined(const std::vector<std::string>& texts, const char* between) {
-  std::string out;
-  for (const std::string& text : texts) out += (out.empty() ? "" : between) + text;
-  return out;
-}
-
 }  // namespace
 
 std::vector<double> carried_coordinates(const Scene& scene, const CarriedState& carried, const CarriedCurves& shapes,
@@ -253,7 +248,7 @@ std::vector<double> carried_coordinates(const Scene& scene, const CarriedState& 
   if (!interpolated.empty()) warnings.push_back(carried.name + " is interpolated: " + joined(interpolated, "; "));
   if (!moved.empty()) {
     warnings.push_back(carried.name +
-                       " differs in what ends hold, which stays as this composition has it: " + joined(moved, ", "));
+                       " differs in what ends hold, which stays as this composition has it: " + comma_separated(moved));
   }
   return q;
 }
@@ -388,7 +383,7 @@ std::vector<double> carried_multipliers(const Scene& scene, const std::vector<Ro
   }
   if (!without.empty()) {
     warnings.push_back("multipliers of rows that " + name +
-                       " does not have, or on another mesh, start at 0: " + joined(without, ", "));
+                       " does not have, or on another mesh, start at 0: " + comma_separated(without));
   }
   for (const NamedNumbers& numbers : state.multipliers) {
     const bool known =
