@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/commands.hpp"
-#include "core/result/document.hpp"
+#include "core/result/provenance.hpp"
 
 int main(int argc, char** argv) {
   using namespace bowstring::apps;

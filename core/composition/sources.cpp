@@ -1,15 +1,12 @@
 #include "core/composition/sources.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <system_error>
 #include <utility>
 
 #include "core/composition/override.hpp"
+#include "core/composition/read_file.hpp"
 #include "core/composition/sequences.hpp"
 #include "core/composition/toml_text.hpp"
 #include "core/composition/vocabulary.hpp"
@@ -21,20 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr long schema_version = 1;
 constexpr int order_of_overrides = 1 << 20;
-
-struct FileText {
-  std::string text, problem;
-};
-
-FileText read_file(const fs::path& file) {
-  std::error_code ignored;
-  if (fs::is_directory(file, ignored)) return {"", "it is a folder"};
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return {"", errno != 0 ? std::strerror(errno) : "it cannot be opened"};
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  return {std::move(text), stream.bad() ? "reading it failed" : ""};
-}
 
 fs::path absolute_path(const std::string& file) {
   std::error_code ignored;
@@ -62,13 +45,15 @@ class ChainReader {
     source->order = static_cast<int>(chain_.size());
     source->directory = absolute_path(file).parent_path();
 
-    const FileText content = text ? FileText{*text, ""} : read_file(file);
-    if (!content.problem.empty()) {
-      report_unreadable(file, from, content.problem);
+    std::string content;
+    if (text) {
+      content = *text;
+    } else if (const std::string why = read_file(file, content); !why.empty()) {
+      report_unreadable(file, from, why);
       return std::nullopt;
     }
     chain_.push_back({file, text ? fs::path() : canonical_path(file)});
-    std::optional<Node> root = read_toml(content.text, source, report_);
+    std::optional<Node> root = read_toml(content, source, report_);
     if (!root) return std::nullopt;
     return compose(std::move(*root));
   }

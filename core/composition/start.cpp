@@ -1,26 +1,12 @@
 #include "core/composition/start.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "core/composition/keys.hpp"
+#include "core/composition/read_file.hpp"
 
 namespace bowstring {
 namespace {
-
-/// Why the file cannot be read; "" where it has been.
-std::string read_file(const std::string& file, std::string& text) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) return "it is a folder";
-  errno = 0;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return errno != 0 ? std::strerror(errno) : "it cannot be opened";
-  text.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
-  return stream.bad() ? "reading it failed" : "";
-}
 
 /// Whether the state becomes the rest state.
 bool read_rest(const Node& table, Report& report) {

@@ -8,6 +8,7 @@
 #include "core/procedure/multistart.hpp"
 #include "core/procedure/summary.hpp"
 #include "core/result/carry.hpp"
+#include "core/result/provenance.hpp"
 
 namespace bowstring {
 namespace {
@@ -132,7 +133,7 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
     find_equilibria(*solved.session, multistart, watched, solved.solution, out.equilibria);
   }
   out.readable = read_solution(*solved.session, solved.solution, out.readings);
-  out.session = record_of(*solved.session, provenance_json(*solved.session, registry_));
+  out.session = record_of(*solved.session, provenance_json(provenance_of(solved.session->composition, registry_)));
   if (table.given || multistart.given) {
     // Of all solves, not of the last one.
     Seconds& seconds = out.session.seconds;

@@ -1,7 +1,6 @@
 #include "core/result/document.hpp"
 
 #include <cmath>
-#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -38,23 +37,6 @@ Json rows(const std::vector<double>& values, int per_row) {
     out.push_back(vector(values.data() + i, per_row));
   }
   return out;
-}
-
-Json plugins_of(const Session& session, const Registry& registry) {
-  std::set<std::pair<int, std::string>> named;
-  for (const ComponentChoice* choice : components_of(session.composition)) {
-    named.emplace(static_cast<int>(choice->kind), choice->name);
-  }
-  Json plugins = Json::array();
-  for (const auto& [kind, name] : named) {
-    const ComponentOrigin origin = registry.origin(static_cast<Kind>(kind), name);
-    plugins.push_back({{"kind", kind_name(static_cast<Kind>(kind))},
-                       {"name", name},
-                       {"file", origin.file},
-                       {"sha256", origin.sha256},
-                       {"abi_tag", origin.abi_tag}});
-  }
-  return plugins;
 }
 
 Json start_of(const StartOrigin& start) {
@@ -372,13 +354,6 @@ std::string written(const Json& document, int indent) {
 }
 
 }  // namespace
-
-std::string provenance_json(const Session& session, const Registry& registry) {
-  return written({{"version", bowstring_version},
-                  {"interface_version", interface_version},
-                  {"plugins", plugins_of(session, registry)}},
-                 -1);
-}
 
 SessionRecord record_of(const Session& session, std::string provenance) {
   return {session.scene,

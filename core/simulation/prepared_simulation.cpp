@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/result/document.hpp"
+#include "core/result/provenance.hpp"
 #include "core/session/revalue.hpp"
 #include "core/simulation/solving.hpp"
 
@@ -38,7 +39,7 @@ class PreparedSimulation::Inside {
     session = prepare(request, plugins, refusal, carried);
     if (session != nullptr) refuse_procedures(session->composition, refusal);
     if (refusal.any()) session.reset();
-    if (session != nullptr) provenance = provenance_json(*session, plugins);
+    if (session != nullptr) provenance = provenance_json(provenance_of(session->composition, plugins));
     return session != nullptr;
   }
 

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <optional>
 
+#include "core/composition/read_file.hpp"
 #include "plugins/sdk/abi_tag.hpp"
 
 namespace bowstring {
@@ -139,17 +138,9 @@ Status read_elf(std::string_view file, ElfContents& out) {
   return {};
 }
 
-Status read_file(const std::string& file, std::string& out) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);  // also refuses what is no regular file
-  if (error) return Status::failure(Code::failed, "it cannot be read: " + error.message());
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return Status::failure(Code::failed, "it cannot be opened for reading");
-  out.resize(size);
-  if (!stream.read(out.data(), static_cast<std::streamsize>(size))) {
-    return Status::failure(Code::failed, "reading it broke off");
-  }
-  return {};
+Status read_bytes(const std::string& file, std::string& out) {
+  const std::string why = read_file(file, out);
+  return why.empty() ? Status{} : Status::failure(Code::failed, "it cannot be read: " + why);
 }
 
 }  // namespace bowstring

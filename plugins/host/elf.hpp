@@ -21,6 +21,6 @@ struct ElfContents {
 Status read_elf(std::string_view bytes, ElfContents& out);
 
 /// A whole file; `failed` where it cannot be read.
-Status read_file(const std::string& file, std::string& out);
+Status read_bytes(const std::string& file, std::string& out);
 
 }  // namespace bowstring

@@ -110,7 +110,7 @@ Status check_abi(const std::string& library, const std::string& tag, const std::
 Status check_library_file(const std::string& library) {
   std::string bytes;
   ElfContents contents;
-  Status status = read_file(library, bytes);
+  Status status = read_bytes(library, bytes);
   if (status.ok()) status = read_elf(bytes, contents);
   if (!status.ok()) return not_a_plugin(library, status.text);
   if (contents.abi_tag.empty()) return not_a_plugin(library, "it has no section '" + std::string(abi_section) + "'");

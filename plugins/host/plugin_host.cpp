@@ -232,10 +232,13 @@ Status PluginHost::duplicate(const Name& name, const std::vector<std::size_t>& l
 ComponentOrigin PluginHost::origin(Kind kind, const std::string& name) const {
   const std::vector<std::size_t>* libraries = offering(kind, name);
   if (libraries == nullptr) return {};
-  const Sidecar& sidecar = libraries_[libraries->front()].sidecar;
-  std::string bytes;
-  const Status status = read_file(sidecar.library, bytes);
-  return {sidecar.library, status.ok() ? sha256_hex(bytes) : "", sidecar.abi_tag};
+  const Library& library = libraries_[libraries->front()];
+  const std::lock_guard<std::mutex> lock(opening_);
+  if (!library.sha256) {
+    std::string bytes;
+    library.sha256 = read_bytes(library.sidecar.library, bytes).ok() ? sha256_hex(bytes) : "";
+  }
+  return {library.sidecar.library, *library.sha256, library.sidecar.abi_tag};
 }
 
 std::string PluginHost::description(Kind kind, const std::string& name) const {

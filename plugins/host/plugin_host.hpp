@@ -2,6 +2,7 @@
 
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,7 +40,7 @@ class PluginHost final : public Registry {
   std::vector<std::string> names(Kind kind) const override;
   /// `failed` also where two libraries offer the name, and for a plugin of this project that was not built.
   const ComponentDescriptor* find(Kind kind, const std::string& name, Status& status) override;
-  /// Empty for a name that nobody offers; `sha256` empty where the file cannot be read.
+  /// Empty for a name that nobody offers; `sha256` empty where the file cannot be read, which is done once.
   ComponentOrigin origin(Kind kind, const std::string& name) const override;
 
   /// One sentence, from the sidecar; "" for a name that nobody offers.
@@ -54,6 +55,7 @@ class PluginHost final : public Registry {
     Sidecar sidecar;
     std::string sidecar_file;
     const PluginDescriptor* open = nullptr;
+    mutable std::optional<std::string> sha256;
   };
   using Name = std::pair<Kind, std::string>;
 
@@ -74,7 +76,8 @@ class PluginHost final : public Registry {
   std::map<Name, std::vector<std::size_t>> offers_;  ///< indices into libraries_
   std::vector<PluginNotBuilt> not_built_;
   std::vector<std::string> problems_;
-  std::mutex opening_;  ///< guards Library::open, the only thing that changes after the constructor
+  /// Guards Library::open and Library::sha256, the only things that change after the constructor.
+  mutable std::mutex opening_;
 };
 
 }  // namespace bowstring

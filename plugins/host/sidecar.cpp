@@ -31,7 +31,7 @@ Kind kind_in(const Json& entry) {
 template <class Take>
 Status read_json(const std::string& file, const char* what, Take&& take) {
   std::string text;
-  Status status = read_file(file, text);
+  Status status = read_bytes(file, text);
   if (status.ok()) status = guard([&] { take(Json::parse(text)); });
   if (status.ok()) return {};
   return Status::failure(Code::failed, std::string(what) + " '" + file + "' is of no use: " + status.text +

@@ -20,7 +20,7 @@ std::string listed(const std::vector<std::string>& symbols) {
 Status check_exports(const std::string& library) {
   std::string bytes;
   ElfContents contents;
-  if (Status status = read_file(library, bytes); !status.ok()) return status;
+  if (Status status = read_bytes(library, bytes); !status.ok()) return status;
   if (Status status = read_elf(bytes, contents); !status.ok()) return status;
   if (!contents.unique.empty()) {
     return Status::failure(Code::failed,

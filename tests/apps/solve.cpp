@@ -47,7 +47,7 @@ void check_document(const Json& document) {
              {"format", "status", "reason", "warnings", "composition", "provenance", "problem", "solver", "certificate",
               "energy", "quantities", "curves", "contacts", "supports", "state", "equilibria"});
   CHECK(document["format"] == "bowstring.result/1");
-  check_keys(document["provenance"], "provenance", {"version", "interface_version", "plugins"});
+  check_keys(document["provenance"], "provenance", {"version", "interface_version", "kernel", "plugins"});
   check_first(document["provenance"]["plugins"], "provenance.plugins", {"kind", "name", "file", "sha256", "abi_tag"});
   check_keys(document["problem"], "problem", {"unknowns", "fixed", "inequalities", "equalities", "fields"});
   check_first(document["problem"]["fields"], "problem.fields", {"name", "manifold", "count", "unknowns", "reason"});

@@ -12,7 +12,7 @@ using testing::fixture_library;
 namespace {
 std::string bytes_of(const std::string& library) {
   std::string bytes;
-  REQUIRE(read_file(library, bytes).ok());
+  REQUIRE(read_bytes(library, bytes).ok());
   REQUIRE(bytes.size() > 1000);
   return bytes;
 }
@@ -75,8 +75,8 @@ TEST_CASE("a library with any byte of its headers damaged is read within its bou
 
 TEST_CASE("a file that cannot be read is told apart") {
   std::string bytes;
-  CHECK(read_file("/nonexistent.so", bytes).text == "it cannot be read: No such file or directory");
-  CHECK(read_file("/tmp", bytes).text == "it cannot be read: Is a directory");
+  CHECK(read_bytes("/nonexistent.so", bytes).text == "it cannot be read: No such file or directory");
+  CHECK(read_bytes("/tmp", bytes).text == "it cannot be read: it is a folder");
 }
 
 }  // namespace bowstring

@@ -96,7 +96,7 @@ TEST_CASE("the origin of a component is its file, hash and tag") {
   CHECK(origin.file == fixture_library("every-kind"));
   CHECK(origin.abi_tag == host_abi_tag());
   std::string bytes;
-  REQUIRE(read_file(origin.file, bytes).ok());
+  REQUIRE(read_bytes(origin.file, bytes).ok());
   CHECK(origin.sha256 == sha256_hex(bytes));
   CHECK(host.origin(Kind::energy, "nobody").file == "");
 }
