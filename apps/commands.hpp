@@ -31,9 +31,19 @@ struct CheckCommandOptions {
   bool json = false;
 };
 
+struct StudyOptions {
+  std::string file;
+  std::string out;            ///< the study's folder
+  int jobs = 0;               ///< 0: one for each core
+  std::string shard = "1/1";  ///< "i/n"
+  std::string keep = "full";  ///< full | summary
+  bool reduced = false, check = false;
+};
+
 int solve(const CommonOptions& common, const SolveOptions& options);
 int explain(const CommonOptions& common, const std::string& file, const std::vector<std::string>& set);
 int check(const CommonOptions& common, const CheckCommandOptions& options);
+int study(const CommonOptions& common, const StudyOptions& options);
 /// `kind` "" for all.
 int list_plugins(const CommonOptions& common, const std::string& kind, bool json);
 /// `what`: "kind/name".

@@ -48,6 +48,20 @@ int main(int argc, char** argv) {
   check_command->add_flag("--json", check_options.json, "print the report as JSON, and nothing else, on stdout");
   plugin_path(check_command);
 
+  StudyOptions study_options;
+  CLI::App* study_command = app.add_subcommand("study", "run a study; stops and resumes at any point");
+  study_command->add_option("FILE", study_options.file, "study (TOML)")->required();
+  study_command->add_option("--out", study_options.out, "the study's folder: results.csv, report.html, runs/")
+      ->required();
+  study_command->add_option("--jobs", study_options.jobs, "processes that solve (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+  study_command->add_option("--shard", study_options.shard, "i/n: solve the i-th of n parts of the runs");
+  study_command->add_option("--keep", study_options.keep, "full: result documents, compressed; summary: figures alone")
+      ->check(CLI::IsMember({"full", "summary"}));
+  study_command->add_flag("--reduced", study_options.reduced, "the smaller study that the file's [reduced] says");
+  study_command->add_flag("--check", study_options.check, "solve nothing: read all that is there and verify it");
+  plugin_path(study_command);
+
   std::string kind;
   bool plugins_json = false;
   CLI::App* plugins_command = app.add_subcommand("plugins", "list what is installed");
@@ -70,6 +84,7 @@ int main(int argc, char** argv) {
   if (solve_command->parsed()) return solve(common, solve_options);
   if (explain_command->parsed()) return explain(common, explain_file, explain_set);
   if (check_command->parsed()) return check(common, check_options);
+  if (study_command->parsed()) return study(common, study_options);
   if (plugins_command->parsed()) return list_plugins(common, kind, plugins_json);
   return describe(common, what, describe_json);
 }

@@ -5,9 +5,17 @@
 namespace bowstring::apps {
 
 PluginHost make_host(const CommonOptions& common, const std::string& composition_file) {
+  return make_host(common, std::vector<std::string>{composition_file});
+}
+
+PluginHost make_host(const CommonOptions& common, const std::vector<std::string>& composition_files) {
   PluginHostOptions options = plugin_search();
   options.command_line_path = common.plugin_path;
-  if (!composition_file.empty()) options.composition_path = composition_plugin_path({composition_file, {}});
+  for (const std::string& file : composition_files) {
+    if (file.empty()) continue;
+    for (std::string& folder : composition_plugin_path({file, {}}))
+      options.composition_path.push_back(std::move(folder));
+  }
   return PluginHost(options);
 }
 

@@ -11,6 +11,8 @@ namespace bowstring::apps {
 
 /// The host for a composition: --plugin-path, the composition's own, the environment, the running binary's.
 PluginHost make_host(const CommonOptions& common, const std::string& composition_file);
+/// The same for several compositions.
+PluginHost make_host(const CommonOptions& common, const std::vector<std::string>& composition_files);
 
 /// "path=value" pairs; what lacks the equals sign is reported on stderr.
 bool parse_overrides(const std::vector<std::string>& set, std::vector<Override>& out);

@@ -91,6 +91,13 @@ std::vector<const ComponentChoice*> components_of(const Composition& composition
   return out;
 }
 
+std::vector<std::string> data_files_of(const Composition& composition) {
+  std::vector<std::string> out;
+  for (const ComponentChoice* choice : components_of(composition)) add_paths(choice->parameters, out);
+  if (!composition.start.from.empty()) out.push_back(composition.start.from);
+  return out;
+}
+
 CompositionOutcome load_composition(const CompositionRequest& request, Registry& registry) {
   CompositionOutcome outcome;
   Report report;
@@ -101,10 +108,7 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
     composition.file = request.file;
     composition.input_files = sources->files;
     composition.steps = sources->steps;
-    for (const ComponentChoice* choice : components_of(composition)) {
-      add_paths(choice->parameters, composition.input_files);
-    }
-    if (!composition.start.from.empty()) composition.input_files.push_back(composition.start.from);
+    for (std::string& file : data_files_of(composition)) composition.input_files.push_back(std::move(file));
     composition.plugin_path = sources->plugin_path;
     if (report.empty() && outcome.plugin_failure.ok()) {
       composition.resolved_json = resolved_json(composition);

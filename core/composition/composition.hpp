@@ -172,13 +172,17 @@ struct Composition {
 /// Every plugin that a composition names, in the order of its tables; one as often as it is named.
 std::vector<const ComponentChoice*> components_of(const Composition& composition);
 
+/// The files of data that a composition names, absolute: those of parameters, and the document of [start].
+std::vector<std::string> data_files_of(const Composition& composition);
+
 /// `path=value` from the command line, applied after the file's own overrides.
 struct Override {
   std::string path;   ///< "energy.axial-tension.tension"
   std::string value;  ///< TOML; what does not parse as TOML is a string
-  /// Where it comes from, if not from the command line: "scene.toml:31:8"; errors then begin with it, and it comes
-  /// after the overrides of steps.
+  /// Where it comes from, if not from the command line: "scene.toml:31:8"; errors then begin with it.
   std::string position = "";
+  std::string directory = "";  ///< what files in `value` are relative to; "": the working directory
+  bool after_steps = false;    ///< it comes after the overrides of steps
 };
 
 struct CompositionRequest {

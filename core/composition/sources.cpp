@@ -182,7 +182,7 @@ class ChainReader {
 void apply_requested(Node& root, const Override& one, int order, Report& report) {
   const auto source = std::make_shared<Source>();
   source->name = one.position.empty() ? "--set " + one.path + "=" + one.value : one.position;
-  source->directory = absolute_path(".");
+  source->directory = absolute_path(one.directory.empty() ? "." : one.directory);
   source->order = order_of_overrides + order;
   const Position position{source, 0, 0};
   apply_override(root, one.path, position, read_value_or_text(one.value, position), report);
@@ -191,12 +191,12 @@ void apply_requested(Node& root, const Override& one, int order, Report& report)
 void apply_request(SourceTree& tree, const CompositionRequest& request, Report& report) {
   int order = 0;
   for (const Override& one : request.overrides) {
-    if (one.position.empty()) apply_requested(tree.root, one, order++, report);
+    if (!one.after_steps) apply_requested(tree.root, one, order++, report);
   }
   tree.steps = read_steps(tree.root, report);
   apply_steps(tree.root, request.step, report);
   for (const Override& one : request.overrides) {
-    if (!one.position.empty()) apply_requested(tree.root, one, order++, report);
+    if (one.after_steps) apply_requested(tree.root, one, order++, report);
   }
 }
 

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <utility>
 
 namespace bowstring {
@@ -144,6 +145,57 @@ Node read_value_or_text(const std::string& text, const Position& position) {
   Node value = std::move(table->entries.front().value);
   move_to(value, position);
   return value;
+}
+
+namespace {
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char letter : text) {
+    if (letter == '"' || letter == '\\') {
+      out += '\\';
+      out += letter;
+    } else if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) {
+      char escaped[8];
+      std::snprintf(escaped, sizeof escaped, "\\u%04X", static_cast<unsigned>(letter));
+      out += escaped;
+    } else {
+      out += letter;
+    }
+  }
+  return out + "\"";
+}
+
+/// TOML tells 3 and 3.0 apart, and knows inf and nan.
+std::string float_text(double number) {
+  const std::string digits = decimal(number);
+  return digits.find_first_of(".einf") == std::string::npos ? digits + ".0" : digits;
+}
+
+}  // namespace
+
+std::string toml_value(const Node& node) {
+  std::string inside;
+  switch (node.type) {
+    case Node::Type::table:
+      for (const Entry& entry : node.entries) {
+        inside += (inside.empty() ? "" : ", ") + quoted(entry.key) + " = " + toml_value(entry.value);
+      }
+      return "{ " + inside + " }";
+    case Node::Type::list:
+      for (const Node& item : node.items) inside += (inside.empty() ? "" : ", ") + toml_value(item);
+      return "[" + inside + "]";
+    case Node::Type::integer:
+      return std::to_string(node.integer);
+    case Node::Type::number:
+      return float_text(node.number);
+    case Node::Type::flag:
+      return node.flag ? "true" : "false";
+    case Node::Type::text:
+    case Node::Type::date:
+      return quoted(node.text);
+  }
+  return "";
 }
 
 }  // namespace bowstring

@@ -16,4 +16,7 @@ std::optional<Node> read_toml(std::string_view text, const std::shared_ptr<const
 /// One TOML value; text where it is not TOML. Everything in it has the position `position`.
 Node read_value_or_text(const std::string& text, const Position& position);
 
+/// A value as TOML on one line, which reads as the same value.
+std::string toml_value(const Node& node);
+
 }  // namespace bowstring

@@ -22,7 +22,7 @@ Session* ParameterFamily::at(double t, Refusal& refusal) {
     share_ = t;
     return &session();
   }
-  const Override change{path_, text, t < 0.5 ? from_position_ : to_position_};
+  const Override change{path_, text, t < 0.5 ? from_position_ : to_position_, "", true};
   if (!revalue(*session_, change)) {
     CompositionRequest request = request_;
     request.overrides.push_back(change);

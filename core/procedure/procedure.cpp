@@ -51,7 +51,7 @@ bool Procedure::check_walk(const Session& session, const CompositionRequest& req
   for (const double share : checked_shares) {
     CompositionRequest walked = request;
     walked.overrides.push_back(
-        {table.path, table.range.text(share), share < 0.5 ? table.from_position : table.to_position});
+        {table.path, table.range.text(share), share < 0.5 ? table.from_position : table.to_position, "", true});
     Refusal refused;
     if (bowstring::prepare(walked, registry_, refused) != nullptr) continue;
     tell_value(refused, table, share);

@@ -368,9 +368,10 @@ SessionRecord record_of(const Session& session, std::string provenance) {
           session.seconds};
 }
 
-std::string result_document(const std::vector<StateResult>& states) {
+std::string result_document(const std::vector<StateResult>& states, const std::string& study) {
   Json document;
   document["format"] = result_format;
+  document["study"] = Json::parse(study);
   add_state(document, states.back());
   document["states"] = Json::array();
   for (const StateResult& result : states) {

@@ -12,8 +12,8 @@ namespace bowstring {
 SessionRecord record_of(const Session& session, std::string provenance);
 
 /// The `bowstring.result/1` document as JSON text, numbers with 17 significant digits: of the last of these states,
-/// the others under `states`. `docs/results.md` describes every key.
-std::string result_document(const std::vector<StateResult>& states);
+/// the others under `states`. `docs/results.md` describes every key. `study`: JSON text, which run of a study it is.
+std::string result_document(const std::vector<StateResult>& states, const std::string& study = "null");
 
 /// The small tables of the document alone, each as it stands there: `status`, `reason`, `certificate`, `energy`,
 /// `quantities`.

@@ -47,7 +47,7 @@ Status publish_file(const std::string& temporary, const std::string& file) {
   return status;
 }
 
-Status write_file(const std::string& file, const std::string& content) {
+Status write_file(const std::string& file, const std::string& content, Durability durability) {
   const std::string temporary = temporary_name(file);
   const int handle = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (handle < 0) return problem("cannot write", file);
@@ -58,7 +58,8 @@ Status write_file(const std::string& file, const std::string& content) {
     if (count <= 0) break;
     written += static_cast<std::size_t>(count);
   }
-  const bool complete = written == content.size() && ::fsync(handle) == 0;
+  const bool synced = durability == Durability::of_the_process || ::fsync(handle) == 0;
+  const bool complete = written == content.size() && synced;
   Status status = complete ? Status{} : problem("cannot write", file);
   ::close(handle);
   if (!complete) {
