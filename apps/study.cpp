@@ -100,12 +100,14 @@ bool parse_shard(const std::string& text, PoolOptions& out) {
 std::optional<Plan> prepare(const CommonOptions& common, const StudyOptions& options, const Folder& folder,
                             std::unique_ptr<PluginHost>& host, int& code) {
   Refusal refusal;
-  std::optional<study::StudyFile> file = study::read_study(options.file, options.reduced, refusal.errors);
+  study::StudyFile file = study::read_study(options.file, options.reduced, refusal.errors);
+  host.reset(new PluginHost(make_host(common, study::bases_of(file))));
   std::optional<Plan> plan;
-  if (file) {
-    folder.open(file->name, refusal.errors);
-    host.reset(new PluginHost(make_host(common, study::bases_of(*file))));
-    plan = study::make_plan(std::move(*file), *host, refusal);
+  if (refusal.any()) {
+    study::check_values(std::move(file), *host, refusal);
+  } else {
+    folder.check(file.name, refusal.errors);
+    plan = study::make_plan(std::move(file), *host, refusal);
   }
   if (!refusal.any()) return plan;
   code = report(refusal);
@@ -178,7 +180,8 @@ int study(const CommonOptions& common, const StudyOptions& options) {
   if (!plan) return code;
   if (options.check) return verify(*plan, folder);
   study::Claims claims;
-  Status status = claims.open(folder.file("claims.lock"));
+  Status status = folder.make();
+  if (status.ok()) status = claims.open(folder.file("claims.lock"));
   if (status.ok()) status = folder.write_lock(*plan, options.reduced);
   if (!status.ok()) {
     complain(status.text);

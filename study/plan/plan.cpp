@@ -12,6 +12,7 @@ namespace bowstring::study {
 namespace {
 
 constexpr std::size_t most_runs = 10000000;
+constexpr double most_checked_runs = 2000.0;  // of a study that is wrong anyway
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -244,6 +245,15 @@ std::optional<Plan> make_plan(StudyFile study, Registry& registry, Refusal& refu
   check_reference(plan, refusal);
   if (refusal.any()) return std::nullopt;
   return plan;
+}
+
+void check_values(StudyFile study, Registry& registry, Refusal& refusal) {
+  if (study.axes.empty() || request_of(study, std::vector<int>(study.axes.size(), 0)).file.empty()) return;
+  study.reference = {};
+  double runs = 1.0;
+  for (const AxisGroup& group : study.groups) runs *= group.count;
+  if (runs > most_checked_runs) study.combination = Combination::one_at_a_time;
+  make_plan(std::move(study), registry, refusal);
 }
 
 }  // namespace bowstring::study

@@ -46,4 +46,7 @@ std::string run_label(const StudyFile& study, const std::vector<int>& choice);
 /// have in common; what only some combinations cannot take is a refused run. Empty where `refusal` has got something.
 std::optional<Plan> make_plan(StudyFile study, Registry& registry, Refusal& refusal);
 
+/// Looks for what else is wrong with a study whose file has errors: its paths and values, as far as they could be read.
+void check_values(StudyFile study, Registry& registry, Refusal& refusal);
+
 }  // namespace bowstring::study

@@ -402,13 +402,13 @@ std::vector<std::string> bases_of(const StudyFile& study) {
   return out;
 }
 
-std::optional<StudyFile> read_study(const std::string& file, bool reduced, std::vector<InputError>& errors) {
+StudyFile read_study(const std::string& file, bool reduced, std::vector<InputError>& errors) {
   Report report;
   std::error_code ignored;
   const auto source =
       std::make_shared<Source>(Source{file, fs::absolute(file, ignored).parent_path().lexically_normal(), 0});
   std::string text;
-  std::optional<StudyFile> study;
+  StudyFile study;
   if (const std::string why = read_file(file, text); !why.empty()) {
     report.error({source, 0, 0}, "cannot read the file (" + why + ")", "a study in TOML", "check the path");
   } else if (std::optional<Node> root = read_toml(text, source, report)) {
@@ -421,7 +421,6 @@ std::optional<StudyFile> read_study(const std::string& file, bool reduced, std::
     }
   }
   errors = report.sorted();
-  if (!errors.empty()) return std::nullopt;
   return study;
 }
 

@@ -78,8 +78,8 @@ struct StudyFile {
 /// Every composition that some run is made from, each once.
 std::vector<std::string> bases_of(const StudyFile& study);
 
-/// Reads a study. `reduced`: with what its table [reduced] says instead. Empty where `errors` has got some: all of the
-/// file at once, with their places.
-std::optional<StudyFile> read_study(const std::string& file, bool reduced, std::vector<InputError>& errors);
+/// Reads a study. `reduced`: with what its table [reduced] says instead. All that is wrong with the file is in
+/// `errors`, with places; then what is returned has the rest of it, of use for nothing but looking for more.
+StudyFile read_study(const std::string& file, bool reduced, std::vector<InputError>& errors);
 
 }  // namespace bowstring::study

@@ -61,7 +61,7 @@ std::string Folder::owner(std::string& why) const {
   return "";
 }
 
-void Folder::open(const std::string& study, std::vector<InputError>& errors) const {
+void Folder::check(const std::string& study, std::vector<InputError>& errors) const {
   const auto fail = [&](const std::string& found, const std::string& expected, const std::string& mend) {
     errors.push_back({"--out " + path_, found, expected, mend});
   };
@@ -88,15 +88,21 @@ void Folder::open(const std::string& study, std::vector<InputError>& errors) con
     return fail("the folder holds '" + name + "' and no " + lock_name, "a folder of this study, or an empty or new one",
                 "name another folder");
   }
-  fs::create_directories(path_ + "/runs", error);
-  if (error)
-    return fail("'" + path_ + "/runs' cannot be made (" + error.message() + ")", "a place that can be written", "");
-  for (const std::string& place : {file(lock_name), record_file("x")}) {
-    if (const std::string obstructed = obstacle(place); !obstructed.empty()) {
-      return fail("cannot write in '" + fs::path(place).parent_path().string() + "': " + obstructed,
-                  "a folder that can be written", "");
+  for (fs::path place = fs::path(path_) / "runs"; !place.empty(); place = place.parent_path()) {
+    if (!fs::exists(place, error)) continue;
+    const std::string obstructed = obstacle((place / "x").string());
+    if (!obstructed.empty()) {
+      fail("cannot write in '" + place.string() + "': " + obstructed, "a folder that can be written", "");
     }
+    return;
   }
+}
+
+Status Folder::make() const {
+  std::error_code error;
+  fs::create_directories(path_ + "/runs", error);
+  if (!error) return {};
+  return Status::failure(Code::invalid_input, "cannot make '" + path_ + "/runs': " + error.message());
 }
 
 Stored Folder::load(const std::string& hash, RunRecord& record, std::string& why) const {

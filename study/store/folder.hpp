@@ -24,10 +24,15 @@ enum class Stored : int { missing, whole, damaged };
 /// there is whole, or somebody has damaged it, which its digest tells.
 class Folder {
  public:
-  explicit Folder(std::string path) : path_(std::move(path)) {}
+  explicit Folder(std::string path) : path_(std::move(path)) {
+    while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
+  }
 
-  /// Makes the folder, or checks that it is this study's and can be written. What is wrong is in `errors`.
-  void open(const std::string& study, std::vector<InputError>& errors) const;
+  /// Whether the folder is this study's, or can become it. What is wrong is in `errors`; nothing is written.
+  void check(const std::string& study, std::vector<InputError>& errors) const;
+
+  /// Makes it where it is not there yet.
+  Status make() const;
 
   /// Of a run by its hash. `why`: what is wrong with a damaged one, with its file.
   Stored load(const std::string& hash, RunRecord& record, std::string& why) const;
