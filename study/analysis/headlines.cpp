@@ -1,0 +1,285 @@
+#include "study/analysis/headlines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "core/composition/nearest.hpp"
+#include "study/analysis/causes.hpp"
+#include "study/analysis/words.hpp"
+
+namespace bowstring::study {
+
+namespace {
+
+constexpr std::size_t most_headlines = 5, most_listed = 12;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// "a; b; and 3 more."
+std::string listed(const std::vector<std::string>& parts) {
+  if (parts.empty()) return "";
+  std::vector<std::string> shown(parts.begin(), parts.begin() + static_cast<long>(std::min(parts.size(), most_listed)));
+  if (shown.size() < parts.size()) shown.push_back("and " + std::to_string(parts.size() - shown.size()) + " more");
+  return joined(shown, "; ") + ".";
+}
+
+std::string of_all(int count, int all) { return std::to_string(count) + " of " + std::to_string(all); }
+
+std::string with_unit(const std::string& number, const QuantityData& quantity) {
+  return quantity.unit.empty() ? number : number + " " + quantity.unit;
+}
+
+/// Lines by how a quantity behaves along them.
+struct Tally {
+  std::vector<const Line*> settling, moving, unjudged, beside;
+  int judged() const { return static_cast<int>(settling.size() + moving.size()); }
+};
+
+Tally tally(const Analysis& analysis, std::size_t quantity) {
+  Tally out;
+  for (const Line& line : analysis.lines.lines) {
+    const std::optional<Fit>& fit = line.fits[quantity];
+    if (!fit) continue;
+    if (fit->verdict == Settling::too_few) {
+      out.unjudged.push_back(&line);
+    } else {
+      (fit->settles() ? out.settling : out.moving).push_back(&line);
+      if (std::isfinite(fit->beside)) out.beside.push_back(&line);
+    }
+  }
+  return out;
+}
+
+std::string order_range(const std::vector<const Line*>& lines) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Line* line : lines) {
+    const double order = line->fits[0]->order;
+    if (!std::isfinite(order)) continue;
+    low = std::min(low, order);
+    high = std::max(high, order);
+  }
+  return low > high ? "" : "order " + range_text(order_text(low), order_text(high));
+}
+
+std::string in_brackets(const std::string& text) { return text.empty() ? "" : " (" + text + ")"; }
+
+std::string split_words(const StudyData& data, const Tally& lines, const Cause& cause) {
+  const std::string what = data.quantities[0].column + " from converging is " + conditions_text(data, cause.conditions);
+  const int settle_with = cause.with - cause.hits_with, settle_without = cause.without - cause.hits_without;
+  return "What keeps " + what + ": " + of_all(settle_with, cause.with) + (cause.with == 1 ? " line" : " lines") +
+         " with it " + (cause.with == 1 ? "settles" : "settle") + ", " + of_all(settle_without, cause.without) +
+         " without" + in_brackets(order_range(lines.settling));
+}
+
+Cause cause_of_moving(const StudyData& data, const Analysis& analysis, const Tally& lines) {
+  std::vector<Case> cases;
+  for (const Line* line : lines.settling) cases.push_back({data.runs[at(line->runs[0])].choice, false});
+  for (const Line* line : lines.moving) cases.push_back({data.runs[at(line->runs[0])].choice, true});
+  return find_cause(cases, analysis.lines.axes);
+}
+
+std::string convergence_words(const StudyData& data, const Analysis& analysis, const Tally& lines) {
+  const std::string name = data.quantities[0].column;
+  const int settling = static_cast<int>(lines.settling.size()), judged = lines.judged();
+  if (judged == 0) {
+    return name + ": too few runs converged to tell whether it settles as the mesh is refined";
+  }
+  const std::string& first = (settling > 0 ? lines.settling : lines.moving)[0]->fits[0]->text;
+  if (judged == 1) return name + (settling > 0 ? " converges: " : " does not settle: it ") + first;
+  if (settling == judged) {
+    std::string out =
+        name + " converges in all " + std::to_string(judged) + " lines" + in_brackets(order_range(lines.settling));
+    if (!lines.beside.empty()) out += ", in " + std::to_string(lines.beside.size()) + " of them beside the reference";
+    return out;
+  }
+  if (settling == 0) return name + " settles in none of " + std::to_string(judged) + " lines; the first one " + first;
+  const Cause cause = cause_of_moving(data, analysis, lines);
+  if (cause.found()) return split_words(data, lines, cause);
+  return name + " settles in " + of_all(settling, judged) + " lines" + in_brackets(order_range(lines.settling)) +
+         "; no axis tells which";
+}
+
+std::string convergence_detail(const StudyData& data, const Analysis& analysis, const Tally& lines) {
+  std::vector<std::string> parts;
+  for (const std::vector<const Line*>* group : {&lines.moving, &lines.settling, &lines.unjudged}) {
+    for (const Line* line : *group) parts.push_back(line->label + ": " + line->fits[0]->text);
+  }
+  std::string out = listed(parts);
+  std::vector<std::string> others;
+  for (std::size_t q = 1; q < data.quantities.size(); ++q) {
+    const Tally own = tally(analysis, q);
+    if (own.judged() == 0) continue;
+    others.push_back(data.quantities[q].column + " settles in " +
+                     of_all(static_cast<int>(own.settling.size()), own.judged()));
+  }
+  if (!others.empty()) out += " Of the others, " + listed(others);
+  return out;
+}
+
+void add_convergence(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
+  if (data.quantities.empty()) return;
+  const Tally lines = tally(analysis, 0);
+  if (lines.judged() == 0 && lines.unjudged.empty()) return;
+  out.push_back(
+      {HeadlineKind::convergence, convergence_words(data, analysis, lines), convergence_detail(data, analysis, lines)});
+}
+
+std::string instead_of(const StudyData& data, const Effect& effect) {
+  const AxisData& axis = data.axes[at(effect.axis)];
+  return choice_text(axis, effect.to) + " instead of " +
+         (effect.from < 0 ? "the baseline" : axis.label[at(effect.from)]);
+}
+
+std::string amount_of(const StudyData& data, const Effect& effect) {
+  const double sign = effect.mean < 0.0 ? -1.0 : 1.0;
+  const bool relative = std::isfinite(effect.relative);
+  const double size = relative ? effect.mean / effect.relative : 1.0;
+  const auto number = [&](double value) { return relative ? percent(value / size) : figure(value); };
+  std::string out = number(sign * effect.mean);
+  if (!relative) out = with_unit(out, data.quantities[at(effect.quantity)]);
+  if (effect.pairs < 2) return out;
+  const double ends[2] = {sign * effect.low, sign * effect.high};
+  return out + " (95 %: " + range_text(number(std::min(ends[0], ends[1])), number(std::max(ends[0], ends[1]))) + ")";
+}
+
+std::string effect_words(const StudyData& data, const Effect& effect) {
+  return instead_of(data, effect) + (effect.mean < 0.0 ? " lowers " : " raises ") +
+         data.quantities[at(effect.quantity)].column + " by " + amount_of(data, effect);
+}
+
+void add_effect(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
+  std::vector<const Effect*> own;
+  for (const Effect& effect : analysis.effects.quantities) {
+    if (effect.quantity == 0 && effect.mean != 0.0) own.push_back(&effect);
+  }
+  if (own.empty()) return;
+  const Effect& first = *own[0];
+  const QuantityData& quantity = data.quantities[0];
+  std::string detail = counted(first.pairs, "pair") + " of converged runs; most, by " +
+                       with_unit(figure(first.largest), quantity) + ", at " +
+                       run_label(data, varying_axes(data), first.largest_run) + ".";
+  std::vector<std::string> rest;
+  for (std::size_t k = 1; k < own.size(); ++k)
+    rest.push_back(instead_of(data, *own[k]) + " " + (own[k]->mean < 0 ? "lowers" : "raises") + " it by " +
+                   amount_of(data, *own[k]));
+  if (!rest.empty()) detail += " Then: " + listed(rest);
+  out.push_back({HeadlineKind::effect, effect_words(data, first), detail});
+}
+
+std::string distribution_words(const StudyData& data, const Distribution& d) {
+  const QuantityData& quantity = data.quantities[at(d.quantity)];
+  std::string out = quantity.column + (d.label.empty() ? "" : " with " + d.label) + ": median " +
+                    with_unit(figure(d.quantiles[2]), quantity) +
+                    ", 5…95 %: " + with_unit(range_text(figure(d.quantiles[0]), figure(d.quantiles[4])), quantity);
+  if (d.shares.empty() || d.r_squared < enough_explained) return out;
+  const auto most = std::max_element(d.shares.begin(), d.shares.end());
+  const AxisData& axis = data.axes[at(d.axes[at(static_cast<int>(most - d.shares.begin()))])];
+  return out + "; " + axis.name + " makes up " + percent(*most) + " of its variance";
+}
+
+void add_distribution(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
+  const std::vector<Distribution>& all = analysis.distributions;
+  if (all.empty() || all[0].quantity != 0) return;
+  std::vector<std::string> parts{
+      "Over " + counted(all[0].count, "run") +
+      (all[0].left_out > 0 ? ", " + std::to_string(all[0].left_out) + " without a value" : "")};
+  if (!all[0].note.empty()) parts.push_back(all[0].note);
+  for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(distribution_words(data, all[k]));
+  out.push_back({HeadlineKind::effect, distribution_words(data, all[0]), listed(parts)});
+}
+
+void add_inseparable(const Analysis& analysis, std::vector<Headline>& out) {
+  if (analysis.inseparable.empty()) return;
+  std::vector<std::string> parts;
+  for (const Inseparable& pair : analysis.inseparable) parts.push_back(pair.text);
+  out.push_back(
+      {HeadlineKind::warning, parts[0],
+       "Their effects on all quantities stand in one proportion wherever it was computed: a change of one can be "
+       "made good by the other. " +
+           (parts.size() > 1 ? listed(parts) : "")});
+}
+
+/// "8 stalled, 4 invalid", the most frequent first.
+std::vector<std::pair<std::string, int>> by_frequency(const std::map<std::string, int>& counts) {
+  std::vector<std::pair<std::string, int>> out(counts.begin(), counts.end());
+  std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  return out;
+}
+
+void add_invalid(const StudyData& data, std::vector<Headline>& out) {
+  std::map<std::string, int> reasons;
+  int count = 0;
+  for (const RunData& run : data.runs) {
+    if (run.status != "invalid") continue;
+    ++count;
+    ++reasons[run.reason];
+  }
+  if (count == 0) return;
+  const int all = static_cast<int>(data.runs.size());
+  std::string text =
+      of_all(count, all) + " runs came out invalid: they satisfy every row and are no equilibrium of the curves";
+  std::vector<std::string> parts;
+  for (const auto& [reason, times] : by_frequency(reasons)) parts.push_back(std::to_string(times) + ": " + reason);
+  out.push_back({HeadlineKind::warning, text, "They count nowhere. " + listed(parts)});
+}
+
+void add_failures(const StudyData& data, std::vector<Headline>& out) {
+  std::map<std::string, int> statuses, reasons;
+  std::vector<Case> cases;
+  int failures = 0;
+  for (const RunData& run : data.runs) {
+    cases.push_back({run.choice, !run.converged()});
+    if (run.converged()) continue;
+    ++failures;
+    ++statuses[run.status];
+    if (!run.reason.empty()) ++reasons[run.reason];
+  }
+  if (failures == 0) return;
+  const int all = static_cast<int>(data.runs.size());
+  std::vector<std::string> kinds, why;
+  for (const auto& [status, times] : by_frequency(statuses)) kinds.push_back(std::to_string(times) + " " + status);
+  for (const auto& [reason, times] : by_frequency(reasons)) why.push_back(std::to_string(times) + ": " + reason);
+  std::vector<int> axes;
+  for (int a : varying_axes(data)) {
+    if (!sampled(data.axes[at(a)])) axes.push_back(a);
+  }
+  const Cause cause = find_cause(cases, axes);
+  const std::string whole =
+      of_all(failures, all) + (all == 1 ? " run" : " runs") + " did not converge: " + comma_separated(kinds);
+  std::string text = whole;
+  if (cause.found()) {
+    text = of_all(cause.hits_with, failures) + (failures == 1 ? " failure has " : " failures have ") +
+           conditions_text(data, cause.conditions) + "; of " + counted(cause.with, "run") + " with it " +
+           std::to_string(cause.hits_with) + (cause.hits_with == 1 ? " fails" : " fail") + ", of " +
+           std::to_string(cause.without) + " without " + std::to_string(cause.hits_without);
+  }
+  out.push_back({HeadlineKind::failures, text, (cause.found() ? whole + ". " : "") + listed(why)});
+}
+
+void keep_five(std::vector<Headline>& headlines) {
+  while (headlines.size() > most_headlines) {
+    const auto effect = std::find_if(headlines.rbegin(), headlines.rend(),
+                                     [](const Headline& h) { return h.kind == HeadlineKind::effect; });
+    headlines.erase(effect == headlines.rend() ? headlines.end() - 1 : std::next(effect).base());
+  }
+}
+
+}  // namespace
+
+std::vector<Headline> write_headlines(const StudyData& data, const Analysis& analysis) {
+  std::vector<Headline> out;
+  const Recommendation& best = analysis.recommendation;
+  if (!best.text.empty()) out.push_back({HeadlineKind::recommendation, best.text, best.detail});
+  add_convergence(data, analysis, out);
+  add_effect(data, analysis, out);
+  add_distribution(data, analysis, out);
+  add_inseparable(analysis, out);
+  add_invalid(data, out);
+  add_failures(data, out);
+  keep_five(out);
+  return out;
+}
+
+}  // namespace bowstring::study

@@ -1,0 +1,256 @@
+#include "study/analysis/recommendation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "core/composition/nearest.hpp"
+#include "study/analysis/lines.hpp"
+#include "study/analysis/statistics.hpp"
+#include "study/analysis/words.hpp"
+
+namespace bowstring::study {
+
+namespace {
+
+constexpr double noise_of_time = 1.2;
+constexpr std::size_t few_numbers = 6;
+constexpr std::size_t most_listed = 12;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+std::vector<int> formulation_axes(const StudyData& data) {
+  std::vector<int> words, numbers;
+  for (int a = 0; a < static_cast<int>(data.axes.size()); ++a) {
+    const AxisData& axis = data.axes[at(a)];
+    if (a == data.along || sampled(axis) || !varies(data, a)) continue;
+    if (!axis.numeric()) words.push_back(a);
+    if (axis.numeric() && axis.label.size() <= few_numbers) numbers.push_back(a);
+  }
+  return words.empty() ? numbers : words;
+}
+
+/// All cases of one formulation at one mesh.
+struct Point {
+  int mesh = -1;
+  std::vector<int> runs;
+  bool counts = true;
+  double error = 0.0, seconds = 0.0;
+};
+
+class Finder {
+ public:
+  explicit Finder(const StudyData& data) : data_(data) {
+    out_.axes = formulation_axes(data);
+    if (data.along >= 0) resolution_ = resolutions(data);
+  }
+
+  Recommendation find() {
+    if (data_.quantities.empty() || !data_.quantities[0].has_reference()) return out_;
+    collect();
+    for (auto& [choice, points] : formulations_) out_.candidates.push_back(candidate(choice, points));
+    std::stable_sort(out_.candidates.begin(), out_.candidates.end(), better);
+    if (out_.candidates.empty() || out_.candidates[0].points == 0) {
+      out_.candidates.clear();
+      return out_;
+    }
+    out_.text = out_.candidates[0].reaches ? choice_words() : nothing_words();
+    out_.detail = detail();
+    return out_;
+  }
+
+ private:
+  static bool better(const Candidate& one, const Candidate& other) {
+    if (one.reaches != other.reaches) return one.reaches;
+    if (one.reaches) return one.seconds < other.seconds;
+    if ((one.points > 0) != (other.points > 0)) return one.points > 0;
+    return one.points > 0 && one.least_error < other.least_error;
+  }
+
+  void collect() {
+    for (int run = 0; run < static_cast<int>(data_.runs.size()); ++run) {
+      const RunData& record = data_.runs[at(run)];
+      const int mesh = data_.along < 0 ? -1 : record.choice[at(data_.along)];
+      if (data_.along >= 0 && mesh < 0) continue;
+      if (!std::isfinite(data_.quantities[0].reference[at(run)])) continue;
+      std::vector<int> choice;
+      for (int axis : out_.axes) choice.push_back(record.choice[at(axis)]);
+      std::vector<Point>& points = formulations_[choice];
+      auto point = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.mesh == mesh; });
+      if (point == points.end()) point = points.insert(points.end(), Point{mesh, {}, true, 0.0, 0.0});
+      point->runs.push_back(run);
+    }
+  }
+
+  void measure(Point& point) const {
+    std::vector<double> seconds;
+    for (int run : point.runs) {
+      const bool counts =
+          std::isfinite(counted_value(data_, 0, run)) && std::isfinite(data_.runs[at(run)].solve_seconds);
+      point.counts = point.counts && counts;
+      if (!counts) continue;
+      point.error = std::max(point.error, relative_error(data_, 0, run));
+      seconds.push_back(data_.runs[at(run)].solve_seconds);
+    }
+    point.seconds = mean(seconds);
+  }
+
+  Candidate candidate(const std::vector<int>& choice, std::vector<Point>& points) const {
+    Candidate out;
+    out.choice = choice;
+    if (!choice.empty()) out.label = run_label(data_, out_.axes, points[0].runs[0]);
+    for (Point& point : points) {
+      measure(point);
+      for (int run : point.runs) out.failures += !data_.runs[at(run)].converged();
+      out.of += static_cast<int>(point.runs.size());
+    }
+    points.erase(std::remove_if(points.begin(), points.end(), [](const Point& p) { return !p.counts; }), points.end());
+    std::stable_sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return finer(a, b); });
+    out.points = static_cast<int>(points.size());
+    const Point* best = nullptr;
+    const Point* fastest = nullptr;
+    bool stays = true;
+    for (const Point& point : points) {  // the finest first
+      stays = stays && point.error <= data_.target_error;
+      if (stays && (fastest == nullptr || point.seconds < fastest->seconds)) fastest = &point;
+      if (best == nullptr || point.error < best->error) best = &point;
+    }
+    if (best == nullptr) return out;
+    const Point& chosen = fastest != nullptr ? *fastest : *best;
+    out.reaches = fastest != nullptr;
+    out.mesh = chosen.mesh;
+    out.runs = chosen.runs;
+    out.error = chosen.error;
+    out.seconds = chosen.seconds;
+    out.least_error = best->error;
+    return out;
+  }
+
+  bool finer(const Point& one, const Point& other) const {
+    return data_.along >= 0 && resolution_[at(one.mesh)] > resolution_[at(other.mesh)];
+  }
+
+  std::string mesh_text(const Candidate& c) const {
+    return c.mesh < 0 ? "" : choice_text(data_.axes[at(data_.along)], c.mesh);
+  }
+
+  /// "per-length, node-wise at N = 40"
+  std::string place(const Candidate& c) const {
+    const std::string mesh = mesh_text(c);
+    if (c.label.empty()) return mesh.empty() ? "this formulation" : mesh;
+    return mesh.empty() ? c.label : c.label + " at " + mesh;
+  }
+
+  static std::string cost(const Candidate& c) {
+    return (c.error == 0.0 ? "no error" : percent(c.error)) + " in " + seconds_text(c.seconds);
+  }
+
+  std::string target() const { return percent(data_.target_error); }
+
+  std::string choice_words() const {
+    const std::vector<Candidate>& all = out_.candidates;
+    const bool has_next = all.size() > 1 && all[1].reaches;
+    const bool even = has_next && all[1].seconds <= noise_of_time * all[0].seconds;
+    std::string out = "Use " + place(all[0]);
+    if (even) {
+      out += " or " + place(all[1]) + ": " + cost(all[0]) + " and " + cost(all[1]) + ", as fast as each other";
+    } else {
+      out += ": " + cost(all[0]);
+    }
+    const std::size_t next = even ? 2 : 1;
+    if (next < all.size() && all[next].reaches) {
+      add_clause(out, ", " + times(all[next].seconds / all[0].seconds) + " faster than " + all[next].label,
+                 headline_length);
+    }
+    const std::string losers = losers_words();
+    if (!losers.empty()) add_clause(out, "; " + losers, headline_length);
+    return out;
+  }
+
+  static std::string times(double ratio) { return figure(ratio, ratio < 99.5 ? 2 : 3) + " times"; }
+
+  std::string nothing_words() const {
+    const Candidate& best = out_.candidates[0];
+    const std::string who = out_.axes.empty() ? "No run" : "No formulation";
+    const std::string stays = best.least_error <= data_.target_error ? " and keeps it there" : "";
+    return who + " brings " + data_.quantities[0].column + " within " + target() + stays + ": the most accurate is " +
+           place(best) + ", with " + cost(best);
+  }
+
+  std::vector<const Candidate*> losers() const {
+    std::vector<const Candidate*> out;
+    for (const Candidate& c : out_.candidates) {
+      if (!c.reaches) out.push_back(&c);
+    }
+    return out;
+  }
+
+  /// One alternative that all losers and nobody else has, or the only loser's label, or how many there are.
+  std::string losers_name(const std::vector<const Candidate*>& losers) const {
+    for (std::size_t k = 0; k < out_.axes.size(); ++k) {
+      const int alternative = losers[0]->choice[k];
+      const bool tells = std::all_of(out_.candidates.begin(), out_.candidates.end(),
+                                     [&](const Candidate& c) { return (c.choice[k] == alternative) == !c.reaches; });
+      if (tells) return short_choice_text(data_.axes[at(out_.axes[k])], alternative);
+    }
+    return losers.size() == 1 ? losers[0]->label : std::to_string(losers.size()) + " others";
+  }
+
+  std::string losers_words() const {
+    const std::vector<const Candidate*> all = losers();
+    if (all.empty()) return "";
+    double least = std::numeric_limits<double>::infinity();
+    for (const Candidate* c : all) {
+      if (c->points > 0) least = std::min(least, c->least_error);
+    }
+    const std::string name = losers_name(all);
+    const bool several = all.size() > 1 && name.find(" others") != std::string::npos;
+    if (!std::isfinite(least)) return name + (several ? " have" : " has") + " no mesh on which all runs converge";
+    if (least <= data_.target_error) return name + (several ? " do" : " does") + " not stay within " + target();
+    return name + " never " + (several ? "get" : "gets") + " below " + percent(least);
+  }
+
+  std::string candidate_words(const Candidate& c) const {
+    std::string out = c.label.empty() ? "" : c.label + ": ";
+    if (c.points == 0) {
+      out += "no mesh on which all runs converge";
+    } else if (c.reaches) {
+      out += (c.mesh < 0 ? "" : mesh_text(c) + ", ") + cost(c);
+    } else {
+      const bool crosses = c.least_error <= data_.target_error;
+      out += (crosses ? "does not stay within " + target() : "never below " + percent(c.least_error));
+      if (c.mesh >= 0) out += ", nearest at " + mesh_text(c);
+    }
+    if (c.failures > 0) out += " (" + std::to_string(c.failures) + " of " + counted(c.of, "run") + " failed)";
+    return out;
+  }
+
+  std::string detail() const {
+    std::vector<std::string> parts;
+    for (const Candidate& c : out_.candidates) {
+      if (parts.size() < most_listed) parts.push_back(candidate_words(c));
+    }
+    std::string out = "To bring " + data_.quantities[0].column + " within " + target() + " of " +
+                      data_.quantities[0].reference_text +
+                      ", and keep it there on finer meshes: " + joined(parts, "; ");
+    if (parts.size() < out_.candidates.size()) {
+      out += "; and " + std::to_string(out_.candidates.size() - parts.size()) + " more";
+    }
+    const std::size_t cases = out_.candidates[0].runs.size();
+    if (cases > 1) out += ". Errors are the largest, times the mean of " + std::to_string(cases) + " cases";
+    return out + ".";
+  }
+
+  const StudyData& data_;
+  std::vector<double> resolution_;
+  std::map<std::vector<int>, std::vector<Point>> formulations_;
+  Recommendation out_;
+};
+
+}  // namespace
+
+Recommendation recommend(const StudyData& data) { return Finder(data).find(); }
+
+}  // namespace bowstring::study

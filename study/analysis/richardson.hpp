@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bowstring::study {
+
+/// What a sequence f(x) = f∞ + C x^−p goes to, x a resolution: a number of segments, or one over a mesh width.
+struct Extrapolation {
+  double limit = 0.0;   ///< f∞
+  double order = 0.0;   ///< p; NaN where the finest values are equal to rounding
+  double error = 0.0;   ///< estimate of |limit − f∞|
+  std::string refusal;  ///< why there is no limit; "" where there is one
+
+  bool ok() const noexcept { return refusal.empty(); }
+};
+
+/// Richardson's extrapolation from the three finest values, whose ratios of refinement may differ: p solves
+/// (f₁ − f₂)/(f₂ − f₃) = (x₁^−p − x₂^−p)/(x₂^−p − x₃^−p) (Roache, J. Fluids Eng. 116:405, 1994). The error is how far
+/// the limit from the three values before the finest is off, where there are four that give one, else what the
+/// extrapolation adds to the finest value. Refused: fewer than three values, equal resolutions, a sequence that is not
+/// monotone, p outside 0.3 … 6. `resolution` in any order, above 0; values that are not finite are left out.
+Extrapolation extrapolate(const std::vector<double>& resolution, const std::vector<double>& value);
+
+/// p of three values with differences f₁ − f₂ and f₂ − f₃ of whatever sign, coarse to fine; held to −20 … 40.
+double order_of_three(const double resolution[3], double coarse_difference, double fine_difference);
+
+/// ln |(a^−p − b^−p)/p|, what ln |f(a) − f(b)| is up to a constant; b above a, maybe infinite.
+double difference_shape(double a, double b, double order);
+
+}  // namespace bowstring::study

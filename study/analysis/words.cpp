@@ -1,0 +1,60 @@
+#include "study/analysis/words.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+namespace bowstring::study {
+
+namespace {
+
+std::string formatted(const char* format, int digits, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, digits, value);
+  return text;
+}
+
+/// Two significant digits, without an exponent where there are more before the point.
+std::string two_digits(double value) {
+  return std::fabs(value) >= 99.5 ? formatted("%.*f", 0, value) : formatted("%.*g", 2, value);
+}
+
+}  // namespace
+
+std::string figure(double value, int digits) { return formatted("%.*g", digits, value); }
+
+std::string percent(double share) { return two_digits(100.0 * share) + " %"; }
+
+std::string seconds_text(double seconds) {
+  return seconds < 0.0995 ? two_digits(1000.0 * seconds) + " ms" : two_digits(seconds) + " s";
+}
+
+std::string order_text(double order, int decimals) { return formatted("%.*f", decimals, order); }
+
+std::string counted(int count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+std::string range_text(const std::string& low, const std::string& high) { return low == high ? low : low + "…" + high; }
+
+std::string alternatives_text(const std::vector<std::string>& names) {
+  std::string out;
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (k > 0) out += k + 1 < names.size() ? ", " : " or ";
+    out += names[k];
+  }
+  return out;
+}
+
+std::size_t characters(const std::string& text) {
+  std::size_t count = 0;
+  for (const char c : text) count += (static_cast<unsigned char>(c) & 0xC0) != 0x80;
+  return count;
+}
+
+bool add_clause(std::string& text, const std::string& clause, std::size_t limit) {
+  if (characters(text) + characters(clause) > limit) return false;
+  text += clause;
+  return true;
+}
+
+}  // namespace bowstring::study

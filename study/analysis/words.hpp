@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bowstring::study {
+
+/// "9.75", "0.0031", "1.2e-07": so many significant digits.
+std::string figure(double value, int digits = 3);
+/// "12 %", "0.31 %" of a share.
+std::string percent(double share);
+/// "31 ms", "2.4 s", "310 s".
+std::string seconds_text(double seconds);
+/// "2.0", "1.98" of an order of convergence.
+std::string order_text(double order, int decimals = 1);
+/// "1 line", "2 lines".
+std::string counted(int count, const std::string& singular);
+/// "1.9…2.1", or one of them where both read the same.
+std::string range_text(const std::string& low, const std::string& high);
+/// "a", "a or b", "a, b or c".
+std::string alternatives_text(const std::vector<std::string>& names);
+
+/// Adds `clause` where the text then still has at most `limit` characters; whether it did.
+bool add_clause(std::string& text, const std::string& clause, std::size_t limit);
+/// Characters, not bytes, of UTF-8.
+std::size_t characters(const std::string& text);
+
+/// So long may a headline be, unless a part of it that cannot go is longer.
+inline constexpr std::size_t headline_length = 160;
+
+}  // namespace bowstring::study
