@@ -1,0 +1,333 @@
+"""A study that is killed, that meets a full disk or a folder it may not write, whose files are damaged, that two
+commands solve at once, whose workers die: nothing is lost, nothing is half written, and the figures are the same."""
+
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+
+from study_command import Command, figures, records, require, require_equal, rows
+
+KILLS = 20
+SEED = 20
+
+
+def kill_study(command):
+    """200 runs, half of them in warm chains."""
+    return command.write("kill.toml", f"""
+schema = 1
+base = "{command.scene()}"
+warm-along = "T"
+quantities = ["quantities.peak_displacement_mm", {{ path = "contacts.force_N", reduce = "max" }}, "energy.total"]
+[axes]
+EI = {{ path = "energy.wire-bending.bending-stiffness", log = ["65 N mm^2", "6132 N mm^2"], count = 10 }}
+contact = {{ path = "constraint.lumen.type", values = ["node-wise-contact", "segment-wise-contact"] }}
+T = {{ path = "energy.axial-tension.tension", linear = ["1 N", "10 N"], count = 10 }}
+[set]
+"vessel.iliac.geometry.nodes" = 60
+""")
+
+
+def wait_for_records(process, out, count):
+    """Until the study has so many records, or has ended: no clock decides how far it gets."""
+    while not ((out / "runs").is_dir() and len(records(out)) >= count):
+        try:
+            process.wait(timeout=0.002)
+            return
+        except subprocess.TimeoutExpired:
+            pass
+
+
+def small_study(command, name="small", more=""):
+    return command.write(f"{name}.toml", f"""
+schema = 1
+base = "{command.scene()}"
+[axes]
+T = {{ path = "energy.axial-tension.tension", linear = ["1 N", "10 N"], count = 6 }}
+{more}
+[set]
+"vessel.iliac.geometry.nodes" = 20
+""")
+
+
+def undisturbed(command, study, name, *options):
+    out = command.folder / name
+    code, _, error = command.run(study, out, *options)
+    require_equal((code, error), (0, ""), f"{name} undisturbed")
+    return out
+
+
+def whole_or_absent(folder):
+    """Every record that is there reads, at any moment."""
+    for file in records(folder):
+        try:
+            json.loads(file.read_text())
+        except FileNotFoundError:
+            pass
+
+
+def test_killed_at_random_moments(command):
+    study = kill_study(command)
+    calm = undisturbed(command, study, "calm", "--jobs", "2", "--keep", "summary")
+    require_equal(len(rows(calm)), 200, "rows")
+    out = command.folder / "killed"
+    chance = random.Random(SEED)
+    counts = []
+    for _ in range(KILLS):
+        process = command.start(study, out, "--jobs", "2", "--keep", "summary")
+        threshold = (counts[-1] if counts else 0) + chance.randrange(1, 9)
+        wait_for_records(process, out, threshold)
+        process.kill()
+        process.communicate()
+        whole_or_absent(out)
+        counts.append(len(records(out)))
+    require(0 < counts[0] < 200 and sorted(counts) == counts, f"kills happen on the way: {counts}")
+    print(f"records after each kill: {counts}")
+    code, _, error = command.run(study, out, "--jobs", "2", "--keep", "summary")
+    require_equal((code, error), (0, ""), "the rest")
+    require_equal(figures(out), figures(calm), "figures after kills")
+    require(not [name for name in os.listdir(out / "runs") if ".part-" in name], "temporary files stay")
+    require_equal(command.run(study, out, "--check")[0], 0, "--check")
+
+
+def test_jobs_and_shards_give_the_same_bits(command):
+    study = kill_study(command)
+    calm = figures(command.folder / "calm")
+    alone = undisturbed(command, study, "alone", "--jobs", "1", "--keep", "summary")
+    require_equal(figures(alone), calm, "one job")
+    out = command.folder / "shards"
+    for shard in ("1/3", "3/3", "2/3"):
+        code, told, _ = command.run(study, out, "--jobs", "2", "--shard", shard, "--keep", "summary")
+        require_equal(code, 0, shard)
+        require("results.csv" in told, told)
+    require_equal(figures(out), calm, "shards")
+
+
+def test_two_commands_at_once(command):
+    study = kill_study(command)
+    out = command.folder / "both"
+    first = command.start(study, out, "--jobs", "1", "--keep", "summary")
+    second = command.start(study, out, "--jobs", "2", "--keep", "summary")
+    ends = [first.communicate(), second.communicate()]
+    require_equal((first.returncode, second.returncode), (0, 0), str(ends))
+    require_equal(figures(out), figures(command.folder / "calm"), "two commands")
+
+
+def test_interrupt(command):
+    study = kill_study(command)
+    out = command.folder / "interrupted"
+    process = command.start(study, out, "--jobs", "2", "--keep", "summary")
+    wait_for_records(process, out, 4)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate()
+    require_equal(process.returncode, 1, error)
+    require("of 200 runs there; the same command goes on from here" in error, error)
+    require(not (out / "results.csv").exists(), "a table of a part")
+
+
+def test_workers_end_with_their_parent(command):
+    """A killed command leaves nobody behind, for its output closes when the last of them is gone."""
+    out = command.folder / "orphans"
+    process = command.start(kill_study(command), out, "--jobs", "2", "--keep", "summary")
+    wait_for_records(process, out, 1)
+    process.kill()
+    watchdog = threading.Timer(60.0, os._exit, [1])
+    watchdog.start()
+    process.communicate()
+    watchdog.cancel()
+
+
+def test_damaged_record(command):
+    study = small_study(command)
+    out = undisturbed(command, study, "damaged", "--jobs", "1")
+    before = figures(out)
+    victim = records(out)[2]
+    whole = victim.read_text()
+    for damage in (whole[:100], "", whole.replace('"status": "converged"', '"status": "stalled"'), whole + "x"):
+        victim.write_text(damage)
+        code, _, error = command.run(study, out, "--jobs", "1")
+        require_equal(code, 2, f"damaged record {damage[:20]!r}")
+        require(f"{victim}: the record of a run is damaged" in error.replace("//", "/"), error)
+        require("remove it, and the same command solves that run again" in error, error)
+        require_equal(victim.read_text(), damage, "the damaged record")
+        code, told, error = command.run(study, out, "--check")
+        require_equal(code, 1, told + error)
+    victim.unlink()
+    require_equal(command.run(study, out, "--jobs", "1")[0], 0, "mended")
+    require_equal(figures(out), before, "figures after mending")
+
+
+def test_damaged_document(command):
+    study = small_study(command)
+    out = command.folder / "damaged"
+    document = next(file for file in (out / "runs").iterdir() if file.name.endswith(".result.json.gz"))
+    whole = document.read_bytes()
+    document.write_bytes(whole[:len(whole) // 2])
+    code, _, error = command.run(study, out, "--check")
+    require_equal(code, 1, error)
+    require(f"{document}: the document of a run cannot be used (it ends too early" in error, error)
+    document.write_bytes(whole)
+    require_equal(command.run(study, out, "--check")[0], 0, "--check")
+
+
+def failing_writes(command, library, error, after):
+    return {"LD_PRELOAD": library, "BOWSTRING_TEST_WRITE_ERROR": error, "BOWSTRING_TEST_WRITES": str(after),
+            "BOWSTRING_TEST_WRITE_FOLDER": str(command.folder)}
+
+
+def test_full_disk(command, library):
+    if library is None:
+        return
+    study = small_study(command)
+    for after in (0, 1, 2, 3, 5, 8, 13):
+        out = command.folder / f"full-{after}"
+        code, _, error = command.run(study, out, "--jobs", "1",
+                                     environment=failing_writes(command, library, "ENOSPC", after))
+        require_equal(code, 2, error)
+        require("No space left on device" in error and "cannot write" in error, error)
+        code, _, error = command.run(study, out, "--jobs", "1")
+        require_equal((code, error), (0, ""), "once there is room")
+        require_equal(figures(out), figures(command.folder / "damaged"), "figures after a full disk")
+
+
+def test_read_only_folder(command):
+    study = small_study(command)
+    out = undisturbed(command, study, "read-only", "--jobs", "1")
+    before = sorted(os.listdir(out / "runs"))
+    records(out)[0].unlink()
+    with read_only(out) as works:
+        if not works:
+            return
+        code, _, error = command.run(study, out, "--jobs", "1")
+        require_equal(code, 2, error)
+        require(f"cannot write in '{out}" in error and error.count("\n") >= 1, error)
+    require_equal(len(os.listdir(out / "runs")), len(before) - 1, "files")
+    require_equal(command.run(study, out, "--jobs", "1")[0], 0, "once it can be written")
+
+
+class read_only:
+    """A folder that even root cannot write: a mount of its own, or modes for everybody else."""
+
+    def __init__(self, folder):
+        self.folder, self.mounted, self.modes = folder, False, {}
+
+    def __enter__(self):
+        bind = ["mount", "--bind", str(self.folder), str(self.folder)]
+        if os.geteuid() == 0:
+            if subprocess.run(bind, stderr=subprocess.DEVNULL, check=False).returncode != 0:
+                print("skipped: root, who may write everywhere, and no mounts")
+                return False
+            self.mounted = True
+            done = subprocess.run(["mount", "-o", "remount,bind,ro", str(self.folder)], stderr=subprocess.DEVNULL, check=False)
+            return done.returncode == 0
+        for place in (self.folder / "runs", self.folder):
+            self.modes[place] = place.stat().st_mode
+            place.chmod(0o555)
+        return True
+
+    def __exit__(self, *_):
+        if self.mounted:
+            subprocess.run(["umount", str(self.folder)], check=True)
+        for place, mode in self.modes.items():
+            place.chmod(mode)
+
+
+def test_workers_that_die(command, fixtures):
+    study = command.write("leaving.toml", f"""
+schema = 1
+base = "leaving-scene.toml"
+time-limit = "2 s"
+[axes]
+how = {{ path = "energy.test-leaving.how", values = ["stays", "exits", "crashes", "lingers"] }}
+T = {{ path = "energy.axial-tension.tension", values = ["1 N", "2 N", "3 N"] }}
+""")
+    command.write("leaving-scene.toml", f"""
+schema = 1
+base = "{command.scene()}"
+[[energy]]
+type = "test-leaving"
+on = "iliac"
+""")
+    out = command.folder / "leaving"
+    code, told, error = command.run(study, out, "--jobs", "2", "--plugin-path", fixtures)
+    require_equal(code, 0, told + error)
+    by_how = {}
+    for row in rows(out):
+        by_how.setdefault(row["how"], set()).add((row["status"], row["reason"]))
+    require_equal({status for status, _ in by_how["stays"]}, {"converged"}, "stays")
+    twice = "the process that solved it ended with {}, twice"
+    require_equal(by_how["exits"], {("failed", twice.format("exit status 0"))}, "exits")
+    require_equal(by_how["crashes"], {("failed", twice.format("signal 11 (Segmentation fault)"))}, "crashes")
+    require_equal(by_how["lingers"], {("failed", "it took longer than its time limit")}, "lingers")
+
+
+def test_another_plugin_solves_again_what_names_it(command, build):
+    """A copy of the command, with a list of plugins of its own, in which one library is exchanged."""
+    place = command.folder / "exchanged"
+    place.mkdir()
+    copied = place / "bowstring"
+    shutil.copy2(command.bowstring, copied)
+    plugins = build / "plugins"
+    sidecars = sorted(str(file) for file in plugins.glob("*.bowstring.json"))
+
+    def list_plugins(files):
+        (place / "bowstring-plugins.json").write_text(json.dumps({"sidecars": files, "not_built": []}))
+
+    def run():
+        libraries = os.pathsep.join(str(build / folder) for folder in ("core", "plugins/host"))
+        arguments = [str(copied), *command.arguments(study, out, "--jobs", "1", "--keep", "summary")[1:]]
+        return command.run(study, out, command=arguments, environment={"LD_LIBRARY_PATH": libraries})
+
+    study = small_study(command, "touched",
+                        """solver = { path = "solver.type", values = ["interior-point", "active-set"] }""")
+    out = command.folder / "touched"
+    list_plugins(sidecars)
+    require_equal(run()[0], 0, "first run")
+    first = figures(out)
+    before = set(records(out))
+    require_equal(len(before), 12, "records")
+    sidecar = json.loads((plugins / "active-set.bowstring.json").read_text())
+    library = plugins / sidecar["file"]
+    (place / library.name).write_bytes(library.read_bytes() + b"\0")
+    changed = place / "active-set.bowstring.json"
+    changed.write_text(json.dumps({**sidecar, "file": library.name}))
+    list_plugins([str(changed) if file.endswith("/active-set.bowstring.json") else file for file in sidecars])
+    code, told, error = run()
+    require_equal(code, 0, told + error)
+    require_equal(len(set(records(out)) - before), 6, "records of the runs that name the exchanged library")
+    require_equal(figures(out), first, "figures")
+
+
+def main():
+    bowstring, source_root, build, library = (sys.argv[1:] + [None])[:4]
+    build = pathlib.Path(build)
+    only = os.environ.get("BOWSTRING_TEST_ONLY", "")
+    with tempfile.TemporaryDirectory() as folder:
+        command = Command(bowstring, source_root, folder)
+        tests = [
+            (test_killed_at_random_moments, ()),
+            (test_jobs_and_shards_give_the_same_bits, ()),
+            (test_two_commands_at_once, ()),
+            (test_interrupt, ()),
+            (test_workers_end_with_their_parent, ()),
+            (test_damaged_record, ()),
+            (test_damaged_document, ()),
+            (test_full_disk, (library,)),
+            (test_read_only_folder, ()),
+            (test_workers_that_die, (str(build / "tests" / "plugins" / "fixtures"),)),
+            (test_another_plugin_solves_again_what_names_it, (build,)),
+        ]
+        for test, arguments in tests:
+            if only in test.__name__:
+                print(test.__name__, flush=True)
+                test(command, *arguments)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""What the tests of `bowstring study` share: a small study, the command, its table."""
+
+import csv
+import os
+import pathlib
+import subprocess
+
+SCENE = "planar-iliac-smooth.toml"
+
+
+class Command:
+    """The command of a build, run in a folder of its own."""
+
+    def __init__(self, bowstring, source_root, folder):
+        self.bowstring, self.source_root, self.folder = bowstring, pathlib.Path(source_root), pathlib.Path(folder)
+
+    def scene(self, name=SCENE):
+        return self.source_root / "scenes" / name
+
+    def write(self, name, text):
+        file = self.folder / name
+        file.write_text(text)
+        return file
+
+    def arguments(self, study, out, *options):
+        return [self.bowstring, "study", str(study), "--out", str(out), *options]
+
+    def run(self, study, out, *options, environment=None, command=None, **more):
+        done = subprocess.run(command or self.arguments(study, out, *options), cwd=self.folder, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, stdin=subprocess.DEVNULL,
+                              env={**os.environ, **(environment or {})}, check=False, **more)
+        return done.returncode, done.stdout, done.stderr
+
+    def start(self, study, out, *options):
+        return subprocess.Popen(self.arguments(study, out, *options), cwd=self.folder, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True)
+
+
+def rows(folder):
+    with open(pathlib.Path(folder) / "results.csv", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def figures(folder):
+    """All that may not depend on where and when the runs were solved."""
+    return [{key: value for key, value in row.items() if not key.endswith("_seconds")} for row in rows(folder)]
+
+
+def records(folder):
+    return sorted(file for file in (pathlib.Path(folder) / "runs").iterdir()
+                  if file.name.endswith(".json"))
+
+
+def require(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def require_equal(found, expected, what):
+    require(found == expected, f"{what}: found {found!r}, expected {expected!r}")
