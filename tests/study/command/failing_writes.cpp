@@ -23,8 +23,9 @@ struct Settings {
   std::string folder = text("BOWSTRING_TEST_WRITE_FOLDER");
   long allowed = std::atol(text("BOWSTRING_TEST_WRITES").c_str());
   int error = text("BOWSTRING_TEST_WRITE_ERROR") == "ENOSPC" ? ENOSPC : EIO;
-  std::atomic<long>* count = new (::mmap(nullptr, sizeof(std::atomic<long>), PROT_READ | PROT_WRITE,
-                                         MAP_SHARED | MAP_ANONYMOUS, -1, 0)) std::atomic<long>(0);
+  std::atomic<long>* count =
+      new (::mmap(nullptr, sizeof(std::atomic<long>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0))
+          std::atomic<long>(0);
 };
 
 bool is_watched(int file, const std::string& folder) {
