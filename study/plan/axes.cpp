@@ -457,7 +457,7 @@ std::string unit_suffix(const std::string& unit) {
       out += letter;
     }
   }
-  return out.substr(0, 4) == "_per" ? out.substr(1) : out;
+  return out.rfind("1_per_", 0) == 0 ? out.substr(2) : out;
 }
 
 }  // namespace bowstring::study
