@@ -9,7 +9,6 @@ Chart.defaults.font.size = 12;
 
 function baseOptions() {
   return {
-    parsing: false,
     interaction: { mode: "nearest", intersect: true },
     plugins: { legend: { display: false }, tooltip: tooltipStyle() },
     onClick: (event, hits, chart) => {
@@ -78,6 +77,14 @@ function linearScale(title, more = {}) {
   return scaleOf(title, { type: "linear", grace: "4%", ...more, ticks: { callback: (value) => numberText(value, 6), maxTicksLimit: 8, ...more.ticks } });
 }
 
+/** Whether positive numbers lie more evenly on a logarithmic scale: by where their median is. */
+function isSpreadByFactors(numbers) {
+  const [low, high] = extent(numbers);
+  if (!(low > 0) || high / low < 4) return false;
+  const middle = median(numbers);
+  return Math.abs(Math.log(middle / low) / Math.log(high / low) - 0.5) < Math.abs((middle - low) / (high - low) - 0.5);
+}
+
 /** The scale of an axis of the study: its numbers, or its alternatives side by side. */
 function axisScale(axis, places) {
   if (!isNumeric(axis)) {
@@ -89,8 +96,7 @@ function axisScale(axis, places) {
     });
   }
   const known = places.filter(isKnown);
-  const [low, high] = extent(known);
-  if (!(low > 0) || axes[axis].spacing === "linear" || high / low < 6) return linearScale(axisTitle(axis));
+  if (!isSpreadByFactors(known)) return linearScale(axisTitle(axis));
   const numbers = [...new Set(known)].sort((a, b) => a - b);
   return logScale(axisTitle(axis), known, numbers.length <= 12 ? numbers : null);
 }
@@ -150,4 +156,4 @@ function runTip(run, ...more) {
   ].filter(Boolean);
 }
 
-const withNumberUnit = (value, unit) => (isKnown(value) && unit ? `${numberText(value)} ${unit}` : numberText(value));
+const withNumberUnit = (value, unit) => (isKnown(value) && unit ? `${numberText(value)} ${unitText(unit)}` : numberText(value));

@@ -12,11 +12,11 @@ function buildControls() {
   if (names.length) holder.append(picker("Quantity", names, view.quantity, (quantity) => { view.quantity = Number(quantity); changed(); }));
   holder.append(...filters.map(({ root }) => root), reset, count, selected);
   closeOnLeaving(filters.map(({ root }) => root));
+  selectionMarks.push(() => drawSelected(selected));
   return () => {
     filters.forEach(({ draw }) => draw());
     count.textContent = view.runs.length === runCount ? `all ${counted(runCount, "run")}` : `${wholeText(view.runs.length)} of ${counted(runCount, "run")}`;
     reset.hidden = !isFiltered();
-    drawSelected(selected);
   };
 }
 

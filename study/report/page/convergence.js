@@ -30,7 +30,7 @@ function drawErrorsAlong(figure) {
     xOf: (run) => placeOf(along, run), yOf: (run) => errorOf(quantity, run), log: { y: true }, connected: true,
     scales: (points) => ({
       x: axisScale(along, points.map(({ x }) => x)),
-      y: logScale(`Relative error of ${quantityName(quantity)}`, points.map(({ y }) => y)),
+      y: logScale(errorTitle(quantity), points.map(({ y }) => y)),
     }),
     tip: (run) => [alongText(run), ...runTip(run)],
     plugins: isKnown(study.target_error) ? [levelLine(study.target_error, `target ${percentText(study.target_error)}`)] : [],

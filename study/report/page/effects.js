@@ -21,7 +21,7 @@ function effectWords(effect) {
   const { unit } = quantities[effect.quantity];
   const relative = isKnown(effect.relative) ? ` (${signedText(100 * effect.relative, 3)} % of its mean size)` : "";
   return `What changed ${quantityName(effect.quantity)} most: ${axes[effect.axis].name} from ${axes[effect.axis].labels[effect.from]} to `
-    + `${axes[effect.axis].labels[effect.to]}, by ${signedText(effect.mean, 3)}${unit ? ` ${unit}` : ""}${relative} on average over ${counted(effect.pairs, "pair")}.`;
+    + `${axes[effect.axis].labels[effect.to]}, by ${signedText(effect.mean, 3)}${unit ? ` ${unitText(unit)}` : ""}${relative} on average over ${counted(effect.pairs, "pair")}.`;
 }
 
 function drawEffects(figure) {

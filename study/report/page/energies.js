@@ -7,16 +7,14 @@ function buildEnergies(root) {
   return () => drawEnergies(figure);
 }
 
-/** Of each formulation the finest run shown; without formulations the first runs, whatever is selected before all. */
+/** Of each formulation the finest run shown; without formulations the first ones. */
 function energyRuns() {
   const has = (run) => report.energies.some(({ values }) => isKnown(values[run]));
   const finest = shownGroups().flatMap(({ line, runs: list }) => {
     const known = list.filter(has);
     return line >= 0 && report.along !== null ? known.slice(-1) : known;
   });
-  const { selected } = view;
-  const chosen = selected !== null && has(selected) && !finest.includes(selected) ? [selected, ...finest] : finest;
-  return { chosen: chosen.slice(0, mostEnergyRuns), count: chosen.length };
+  return { chosen: finest.slice(0, mostEnergyRuns), count: finest.length };
 }
 
 /** The axes in which these runs differ: what tells them apart in few words. */

@@ -12,7 +12,8 @@ function addFigure(parent, name, { title = "", height = 380, canvas = true, leve
   const legend = element("div", { class: "legend" });
   const note = element("p", { class: "note muted" });
   const { disclosure, showData } = dataDisclosure(name);
-  const root = element("figure", { class: "figure", "aria-labelledby": heading.id }, heading, tools, box, legend, note, disclosure);
+  const head = element("div", { class: "figure-head" }, heading, tools);
+  const root = element("figure", { class: "figure", "aria-labelledby": heading.id }, head, box, legend, note, disclosure);
   parent.append(root);
 
   const figure = { name, root, heading, tools, box, legend, note, chart: null, showData, data: null };

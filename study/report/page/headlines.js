@@ -1,7 +1,7 @@
 // The first screen: what came of the study in words, and the one diagram that shows it.
 
 const headlineNames = {
-  recommendation: "Use", convergence: "Convergence", effect: "Effect", warning: "Warning", failures: "Failures",
+  recommendation: "Recommendation", convergence: "Convergence", effect: "Effect", warning: "Warning", failures: "Failures",
 };
 const mostHeadlines = 4;
 
@@ -62,7 +62,7 @@ function clamped(text) {
 function mainDiagram() {
   if (hasErrors(view.quantity)) return drawPrecision;
   if (report.along !== null && hasValues(view.quantity)) return (figure) => drawAgainst(figure, report.along);
-  const numeric = axes.findIndex((_, axis) => isNumeric(axis));
+  const numeric = influentialAxes()[0] ?? axes.findIndex((_, axis) => isNumeric(axis));
   if (numeric >= 0 && hasValues(view.quantity)) return (figure) => drawAgainst(figure, numeric);
   if (report.effects.length) return (figure) => { figure.legend.replaceChildren(); drawEffects(figure); };
   return hasValues(view.quantity) ? (figure) => drawAgainst(figure, null) : drawOutcomes;
@@ -71,7 +71,7 @@ function mainDiagram() {
 let cost = "solve time";
 
 function buildMainFigure() {
-  const figure = addFigure(document.getElementById("main-figure"), "main", { height: 420, level: 2 });
+  const figure = addFigure(document.getElementById("main-figure"), "main", { height: 400, level: 2 });
   if (!quantities.length) return () => drawOutcomes(figure);
   return () => {
     figure.tools.replaceChildren();
@@ -85,10 +85,9 @@ function drawPrecision(figure) {
   figure.showTitle(`Cost against error of ${quantityName(quantity)}`);
   figure.tools.replaceChildren(picker("Cost", Object.keys(costs).map((name) => [name, name]), cost, (name) => { cost = name; redraw(); }));
   const { title, of } = costs[cost];
-  const errorTitle = `Relative error of ${quantityName(quantity)}`;
   const series = drawPoints(figure, {
     xOf: of, yOf: (run) => errorOf(quantity, run), log: { x: true, y: true }, connected: report.along !== null,
-    scales: (points) => ({ x: logScale(title, points.map(({ x }) => x)), y: logScale(errorTitle, points.map(({ y }) => y)) }),
+    scales: (points) => ({ x: logScale(title, points.map(({ x }) => x)), y: logScale(errorTitle(quantity), points.map(({ y }) => y)) }),
     tip: (run) => [alongText(run), ...runTip(run)],
     plugins: isKnown(study.target_error) ? [levelLine(study.target_error, `target ${percentText(study.target_error)}`)] : [],
   });

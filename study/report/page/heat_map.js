@@ -22,7 +22,7 @@ function buildHeatMap(root) {
   const names = mappableAxes.map((axis) => [axis, axes[axis].name]);
   const pick = (set) => (chosen) => { set(chosen); redraw(); };
 
-  return () => {
+  const draw = () => {
     const shown = [...(hasValues(view.quantity) ? ["value"] : []), ...(hasErrors(view.quantity) ? ["error"] : []), "time", "status"];
     if (!shown.includes(shows)) shows = shown[0] === "value" ? "value" : "status";
     figure.tools.replaceChildren(
@@ -31,6 +31,8 @@ function buildHeatMap(root) {
       picker("Show", shown.map((name) => [name, name]), shows, pick((name) => { shows = name; })));
     drawHeatMap(figure, across, down, shows);
   };
+  selectionMarks.push(draw);
+  return draw;
 }
 
 /** Per row and column {known, failed, count, value}; null without a run. */
@@ -56,11 +58,21 @@ function drawHeatMap(figure, across, down, shows) {
   const cells = heatCells(across, down, shows === "status" ? (run) => Number(converged(run)) : (run) => (converged(run) ? of(run) : null));
   const scale = heatScale(cells.flat().filter(Boolean).map(({ value }) => value).filter(isKnown), shows);
   figure.box.replaceChildren(tableFrame(heatTable(cells, across, down, scale, shows), figure.heading.textContent));
-  figure.legend.replaceChildren(...(shows === "status" ? [] : [scaleLegend(scale)]), element("span", { class: "entry-text" }, element("i", { class: "failed-key" }, "✕"), " runs that did not converge"));
+  figure.legend.replaceChildren(...(shows === "status" ? [] : [scaleLegend(scale)]), ...failureKeys(cells));
   const most = Math.max(...cells.flat().filter(Boolean).map((cell) => cell.runs.length), 0);
   figure.showNote(most > 1 && shows !== "status" ? "Each cell: the median of its converged runs over all other axes." : "");
   figure.showData([axes[down].column, axes[across].column, name(), "runs", "not converged"], () => cells.flatMap((row, r) => row.flatMap((cell, c) => (cell
     ? [[alternativeValue(down, r), alternativeValue(across, c), cell.value, cell.runs.length, cell.failed]] : []))));
+}
+
+/** What the marks mean that stand in these cells. */
+function failureKeys(cells) {
+  const own = cells.flat().filter((cell) => cell?.failed);
+  const key = (mark, text) => element("span", { class: "entry-text" }, element("i", { class: "failed-key" }, mark), text);
+  return [
+    own.some(({ runs: all, failed }) => failed < all.length) ? key(element("i", { class: "corner" }), "some runs did not converge") : null,
+    own.some(({ runs: all, failed }) => failed === all.length) ? key("✕", "no run converged") : null,
+  ].filter(Boolean);
 }
 
 const alternativeValue = (axis, alternative) => (isNumeric(axis) ? axes[axis].numbers[alternative] : axes[axis].labels[alternative]);
@@ -87,24 +99,25 @@ function heatTable(cells, across, down, scale, shows) {
   const rows = cells.map((row, index) => element("tr", {},
     element("th", { scope: "row", title: axes[down].labels[index] }, shortened(axes[down].labels[index], 26)),
     row.map((cell, column) => heatCell(cell, scale, shows, isDense, `${axes[down].labels[index]}, ${axes[across].labels[column]}`))));
-  return element("table", { class: `heat${isDense ? " dense" : ""}` },
+  return element("table", { class: isDense ? "heat dense" : "heat", style: isDense ? `width: min(100%, ${170 + 34 * head.length}px)` : null },
     element("caption", { class: "axis-title" }, `${axisTitle(across)} →`),
-    element("thead", {}, element("tr", {}, element("th", { class: "axis-title", scope: "col" }, `${axisTitle(down)} ↓`), isDense ? ends : head)), element("tbody", {}, rows));
+    element("thead", {}, element("tr", {}, element("th", { class: "axis-title", scope: "col", style: isDense ? "width: 150px" : null }, `${axisTitle(down)} ↓`), isDense ? ends : head)), element("tbody", {}, rows));
 }
 
 function heatCell(cell, scale, shows, isDense, place) {
   if (!cell) return element("td", { class: "empty", title: `${place}: no run` });
-  const isMarked = cell.runs.includes(view.selected);
-  const failures = cell.failed ? `, ${cell.failed} of ${cell.runs.length} not converged` : "";
-  const title = `${place}: ${numberText(cell.value)}${failures}`;
-  const marks = cell.failed ? element("span", { class: "failed" }, cell.runs.length > 1 && !isDense ? `✕${cell.failed}` : "✕") : "";
-  const classes = (cell.failed === cell.runs.length ? "all-failed" : "") + (isMarked ? " marked" : "");
-  const action = { title, class: classes, onclick: () => select(cell.runs[0]) };
-  if (cell.value === null) return element("td", action, marks);
-  const colour = shows === "status" ? statusScale(cell.value) : scaleColour(scale.share(cell.value));
-  const text = shows === "status" ? `${cell.runs.length - cell.failed}/${cell.runs.length}` : numberText(cell.value, 3);
-  return element("td", { ...action, style: `background-color: ${css(colour)}; color: ${inkOn(colour)}` }, isDense ? "" : text, " ", marks);
+  const { runs: own, failed, value } = cell;
+  const words = `${place}: ${numberText(value)}${failed ? `, ${failed} of ${own.length} not converged (${statusWords(own)})` : ""}`;
+  const classes = [failed === own.length ? "all-failed" : failed ? "some-failed" : "", own.includes(view.selected) ? "marked" : ""];
+  const colour = value === null ? null : shows === "status" ? statusScale(value) : scaleColour(scale.share(value));
+  const text = failed === own.length ? element("span", { class: "failed" }, "✕") : isDense ? "" : cellWords(cell, shows);
+  return element("td", {
+    title: words, class: classes.join(" ").trim() || null, onclick: () => select(own[0]),
+    style: colour ? `background-color: ${css(colour)}; color: ${inkOn(colour)}` : null,
+  }, text);
 }
+
+const cellWords = ({ runs: own, failed, value }, shows) => (shows === "status" ? `${own.length - failed}/${own.length}` : numberText(value, 4));
 
 /** From vermillion, nothing converged, to bluish green, all did. */
 const statusScale = (share) => [213, 94, 0].map((part, index) => Math.round(part + share * ([0, 158, 115][index] - part)));

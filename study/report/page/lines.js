@@ -2,6 +2,7 @@
 
 const mostPoints = 4000;
 const mostLegendEntries = 24;
+const crowd = 16;  // from so many lines on, those that no headline speaks of are faint
 
 // The formulations that the most important headline speaks of: they are drawn above the others.
 const recommended = new Set(report.headlines.find(({ kind }) => kind === "recommendation")?.lines ?? []);
@@ -56,22 +57,32 @@ function pointsOf(groups, xOf, yOf, log) {
 function moveToRims(series, log) {
   const points = series.flatMap((group) => group.points);
   const known = points.filter(({ rim }) => !rim).map(({ y }) => y);
-  const [low, high] = log.y ? logRange(known) : known.length ? extent(known) : [0, 1];
+  const [low, high] = log.y ? logRange(known) : linearRims(known);
   for (const point of points) {
     if (point.rim) point.y = point.rim === "upper" ? high : low;
   }
+}
+
+/** Clear of all values, so that nothing at the rim is taken for one. */
+function linearRims(values) {
+  if (!values.length) return [0, 1];
+  const [low, high] = extent(values);
+  const air = 0.08 * (high - low || Math.abs(high) || 1);
+  return [low - air, high + air];
 }
 
 function datasetsOf(series, connected) {
   return series.flatMap((group) => {
     const style = lineStyle(group.line);
     const isEmphasized = recommended.has(group.line);
-    const common = { borderColor: style.colour, line: group.line, order: isEmphasized ? 0 : 1 };
-    const radius = series.length > 40 || group.points.length > 500 ? 2.5 : isEmphasized ? 6 : 4.5;
+    const isFaint = series.length > crowd && !isEmphasized;
+    const colour = isFaint && recommended.size ? `${style.colour}66` : style.colour;
+    const common = { borderColor: colour, line: group.line, order: isEmphasized ? 0 : 1 };
+    const radius = isFaint || group.points.length > 500 ? 2.5 : isEmphasized ? 6 : 4.5;
     return [{
       ...common, label: group.label, data: group.points.filter(({ run }) => converged(run)),
-      showLine: connected, borderDash: style.dash, borderWidth: isEmphasized ? 4 : series.length > 40 ? 1 : 2,
-      pointStyle: style.marker, backgroundColor: style.colour, pointBackgroundColor: style.colour, pointBorderColor: style.colour,
+      showLine: connected, borderDash: isEmphasized ? [] : style.dash, borderWidth: isEmphasized ? 4 : isFaint ? 1 : 2,
+      pointStyle: style.marker, backgroundColor: colour, pointBackgroundColor: colour, pointBorderColor: colour,
       pointBorderWidth: ["star", "cross"].includes(style.marker) ? 2 : 0, radius, hoverRadius: radius + 3, hitRadius: 5,
     }, {
       ...common, label: `${group.label}: not converged`, data: group.points.filter(({ run }) => !converged(run)),
@@ -95,6 +106,7 @@ function drawPoints(figure, { xOf, yOf, log, connected, scales, tip, plugins = [
   const atLower = points.filter(({ rim }) => rim === "lower").length;
   const atUpper = points.filter(({ rim }) => rim === "upper").length;
   figure.showNote(note,
+    series.some(({ line }) => recommended.has(line)) ? "Thick, ★: recommended." : "",
     atLower ? `At the lower rim: ${counted(atLower, "point")} of exactly 0.` : "",
     points.some(({ run }) => !converged(run)) ? "Crosses: runs that did not converge." : "",
     atUpper ? `At the upper rim: ${counted(atUpper, "failure")} without a value.` : "",
@@ -124,7 +136,8 @@ const alongText = (run) => (report.along === null ? `run ${run}` : `${axes[repor
 function drawLegend(holder) {
   if (!lines.length) return;
   const count = holder.dataset.all ? lines.length : Math.min(lines.length, mostLegendEntries);
-  const entries = range(count).map(legendEntry);
+  const firstOnes = range(lines.length).sort((a, b) => recommended.has(b) - recommended.has(a));
+  const entries = firstOnes.slice(0, count).map(legendEntry);
   if (count < lines.length) {
     const showAll = () => { holder.dataset.all = "true"; drawLegend(holder); };
     entries.push(button(`and ${wholeText(lines.length - count)} more`, showAll, { class: "link" }));
@@ -138,7 +151,7 @@ function legendEntry(line) {
     "class": "entry", "aria-pressed": String(!view.hiddenLines.has(line)), "title": `${lines[line].label}: show or hide`,
   });
   entry.append(swatch(line), element("span", { class: "name" }, lines[line].label));
-  if (recommended.has(line)) entry.append(element("span", { class: "badge" }, "recommended"));
+  if (recommended.has(line)) entry.append(element("span", { class: "badge", title: "recommended" }, "★"));
   if (failures) entry.append(element("span", { class: "failures", title: "runs that did not converge" }, `✕ ${failures}`));
   return entry;
 }

@@ -27,7 +27,8 @@ function placeOf(axis, run) {
   return isNumeric(axis) ? axes[axis].numbers[alternative] : alternative;
 }
 
-const withUnit = (name, unit) => (unit ? `${name} (${unit})` : name);
+const unitText = (unit) => unit.replace(/\^(-?\d+)/g, (_, power) => raised(power));
+const withUnit = (name, unit) => (unit ? `${name} (${unitText(unit)})` : name);
 const axisTitle = (axis) => withUnit(axes[axis].name, isNumeric(axis) ? axes[axis].unit : "");
 
 /** "peak displacement (mm)": a column's name carries its unit, which a reader would rather see once. */
@@ -38,6 +39,12 @@ function quantityName(quantity) {
   return name.replaceAll("_", " ");
 }
 const quantityTitle = (quantity) => withUnit(quantityName(quantity), quantities[quantity].unit);
+
+/** "Relative error of …"; where a reference is 0 the error is not relative. */
+function errorTitle(quantity) {
+  const isRelative = !quantities[quantity].references?.some((reference) => reference === 0);
+  return `${isRelative ? "Relative error" : "Error"} of ${quantityName(quantity)}`;
+}
 
 /** The error of a run without its sign; null where it is not known. */
 function errorOf(quantity, run) {

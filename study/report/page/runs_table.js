@@ -1,6 +1,7 @@
 // All runs, one row each. Only the rows in sight are elements, so that ten thousand scroll like ten.
 
 const rowHeight = 28;   // px, as page.css has it
+const frameHeight = 480;  // px, at most
 const rowsBeyond = 10;  // drawn above and below what is in sight
 const collator = new Intl.Collator("en", { numeric: true });
 
@@ -17,7 +18,7 @@ function runColumns() {
     numbers("solve time (s)", runs.solve_seconds), numbers("set-up time (s)", runs.setup_seconds),
     numbers("unknowns", runs.unknowns), numbers("iterations", runs.iterations), numbers("factorizations", runs.factorizations), numbers("epochs", runs.epochs),
     numbers("wall crossed by (mm)", runs.max_penetration_dense_mm), numbers("smallest stretch", runs.min_stretch),
-    { name: "second order", of: (run) => runs.second_order[run] }, { name: "reason", of: (run) => runs.reason[run] }, { name: "hash", of: (run) => runs.hash[run] },
+    { name: "second order", of: (run) => runs.second_order[run] }, { name: "reason", of: (run) => runs.reason[run] }, { name: "hash", of: (run) => runs.hash[run], width: 14 },
   ].filter(({ of }) => range(runCount).some((run) => ![null, undefined, ""].includes(of(run))));
 }
 
@@ -56,18 +57,28 @@ function buildRunsTable(root) {
 
   function drawRows() {
     const first = Math.max(0, Math.floor(frame.scrollTop / rowHeight) - rowsBeyond);
-    const last = Math.min(listed.length, first + Math.ceil(frame.clientHeight / rowHeight) + 2 * rowsBeyond);
+    const last = Math.min(listed.length, first + Math.ceil(frameHeight / rowHeight) + 2 * rowsBeyond);
     const gap = (rows) => element("tr", { "aria-hidden": "true", "style": `height: ${rows * rowHeight}px` });
     body.replaceChildren(gap(first), ...listed.slice(first, last).map((run, index) => runRow(run, first + index, columns)), gap(listed.length - last));
   }
 
+  function showSelected() {
+    const place = listed.indexOf(view.selected);
+    const top = place * rowHeight;
+    if (place >= 0 && (top < frame.scrollTop || top + 2 * rowHeight > frame.scrollTop + frame.clientHeight)) frame.scrollTop = top - frameHeight / 2;
+    drawRows();
+  }
+
+  selectionMarks.push(showSelected);
   bowstringReport.listedRuns = () => listed;
   return list;
 }
 
+const rowText = (value) => (typeof value === "number" ? numberText(value, 5) : cellText(value));
+
 function runRow(run, place, columns) {
   const cell = ({ of, isNumber }) => {
-    const text = cellText(of(run));
+    const text = rowText(of(run));
     return element("td", { class: isNumber ? "number" : null, title: text.length > 18 ? text : null }, text);
   };
   const [first, ...others] = columns;
@@ -78,7 +89,8 @@ function runRow(run, place, columns) {
 }
 
 /** In characters, by a sample of the rows. */
-function columnWidth({ name, of }) {
+function columnWidth({ name, of, width }) {
+  if (width) return width;
   const step = Math.max(1, Math.floor(runCount / 100));
   const longest = range(runCount).filter((run) => run % step === 0).reduce((most, run) => Math.max(most, cellText(of(run)).length), 0);
   return Math.min(Math.max(longest + 2, Math.min(name.length, 16) + 4), 36);

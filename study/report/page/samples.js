@@ -2,11 +2,21 @@
 
 const sampledAxes = range(axes.length).filter((axis) => axes[axis].spacing === "sampled");
 
+const distributionOf = (quantity) => report.distributions.find((one) => one.quantity === quantity);
+
+/** The sampled axes, the one with the largest share in the variance of the quantity first. */
+function influentialAxes() {
+  const shares = distributionOf(view.quantity)?.shares;
+  const shareOf = (axis) => shares?.[sampledAxes.indexOf(axis)] ?? 0;
+  return [...sampledAxes].sort((a, b) => shareOf(b) - shareOf(a));
+}
+
 function buildDistribution(root) {
   const histogram = addFigure(root, "histogram", { height: 300 });
   const words = element("div", {});
   root.append(words);
-  let against = sampledAxes[0] ?? axes.findIndex((_, axis) => isNumeric(axis));
+  // The first screen has the most influential one.
+  let against = influentialAxes()[1] ?? sampledAxes[0] ?? axes.findIndex((_, axis) => isNumeric(axis));
   const scatter = against >= 0 ? addFigure(root, "scatter", { height: 360 }) : null;
   const names = axes.map(({ name }, axis) => [axis, name]);
   return () => {
@@ -24,7 +34,7 @@ function drawHistogram(figure) {
   const bins = binsOf(values);
   figure.showTitle(`Distribution of ${quantityName(quantity)}`);
   const options = baseOptions();
-  options.scales = { x: linearScale(capital(quantityTitle(quantity)), { grace: 0, offset: false }), y: linearScale("Runs", { beginAtZero: true, ticks: { precision: 0 } }) };
+  options.scales = { x: linearScale(capital(quantityTitle(quantity)), { grace: 0, offset: false, ticks: { includeBounds: false } }), y: linearScale("Runs", { beginAtZero: true, ticks: { precision: 0 } }) };
   options.plugins.tooltip.callbacks = {
     title: ([item]) => (item ? `${numberText(item.raw.low)} to ${numberText(item.raw.high)}` : ""),
     label: (item) => counted(item.raw.y, "run"),
@@ -69,9 +79,8 @@ const quantileLines = (sorted) => ({
 });
 
 function distributionTables() {
-  const own = report.distributions.find(({ quantity }) => quantity === view.quantity);
+  const own = distributionOf(view.quantity);
   if (!own) return [];
-  const { unit } = quantities[view.quantity];
   const quantileColumns = own.quantiles.map(([share]) => percentText(share));
   const tables = [
     element("h3", {}, `${capital(quantityTitle(view.quantity))} over the whole sample`),
@@ -121,6 +130,7 @@ function sensitivityTable(entries, unit) {
 }
 
 function derivativeUnit(unit, parameterUnit) {
-  if (!parameterUnit) return unit;
-  return `${unit || "1"}/${/[ ·*]/.test(parameterUnit) ? `(${parameterUnit})` : parameterUnit}`;
+  const [above, below] = [unitText(unit) || "1", unitText(parameterUnit)];
+  if (!below) return unitText(unit);
+  return `${above}/${/[ ·*/]/.test(below) ? `(${below})` : below}`;
 }

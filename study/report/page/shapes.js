@@ -8,13 +8,14 @@ function buildShapes(root) {
   if (!report.shapes.length) return () => {};
   const figure = addFigure(root, "shapes", { canvas: false });
   const chosen = new Set(range(Math.min(report.shapes.length, mostShapesAtFirst)));
-  const window_ = shapeWindow(figure, chosen);
+  const plane = shapeWindow(figure, chosen);
   return () => {
     figure.showTitle("Shapes and contact forces");
-    window_.draw();
-    figure.tools.replaceChildren(...shapeTools(window_));
+    plane.draw();
+    figure.tools.replaceChildren(...shapeTools(plane));
     figure.legend.replaceChildren(...report.shapes.map((shape, index) => shapeEntry(shape, index, chosen)), ...shapeKeys());
-    figure.showNote("Drag to move, Ctrl and the wheel to zoom.");
+    const largest = largestForce();
+    figure.showNote(largest > 0 ? `The longest arrow: ${numberText(largest, 3)} N.` : "", "Drag to move, Ctrl and the wheel to zoom.");
     figure.showData(["run", "curve", "kind", "point", "x (mm)", "y (mm)", "rest x (mm)", "rest y (mm)", "force (N)"], () => shapeRows(chosen));
   };
 }
@@ -119,27 +120,32 @@ function roundLength(length) {
   return power * [5, 2, 1].find((digit) => digit * power <= length);
 }
 
+/** In the plane; of all shapes, so that their arrows compare. */
+function largestForce() {
+  return Math.max(...report.shapes.flatMap(({ contacts }) => contacts.map(({ fx, fy }) => Math.hypot(fx, fy))), 0);
+}
+
 const pathOf = (points) => points.map(([x, y], index) => `${index ? "L" : "M"}${x} ${-y}`).join("");
 
 function shapeDrawing(shape, colour, all) {
-  const largest = Math.max(...report.shapes.flatMap(({ contacts }) => contacts.map(({ fx, fy }) => Math.hypot(fx, fy))), 1e-300);
   const longest = 0.14 * Math.max(all.width, all.height);
   const curve = ({ name, kind, points, rest }) => [
     rest ? drawing("path", { class: "rest", d: pathOf(rest) }) : null,
     drawing("path", { class: kind === "wire" ? "wire" : "vessel", d: pathOf(points), stroke: colour }, drawing("title", {}, `${name} of ${shape.label}`)),
   ];
   return drawing("g", { "data-run": shape.run }, shape.curves.flatMap(curve),
-    shape.contacts.map((contact) => arrow(contact, longest / largest, colour)));
+    shape.contacts.map((contact) => arrow(contact, longest, colour)));
 }
 
-/** A force as an arrow whose tip is where it acts. */
-function arrow({ x, y, fx, fy, force_N: force }, millimetresPerNewton, colour) {
-  const [dx, dy] = [fx * millimetresPerNewton, -fy * millimetresPerNewton];
+/** A force as an arrow whose tip is where it acts; the largest of all is `longest` mm long. */
+function arrow({ x, y, fx, fy, force_N: force }, longest, colour) {
+  const scale = longest / largestForce();
+  const [dx, dy] = [fx * scale, -fy * scale];
   const length = Math.hypot(dx, dy);
   if (!(length > 0)) return null;
-  const head = Math.min(0.3 * length, 0.25 * millimetresPerNewton * force || Infinity);
+  const head = Math.min(0.35 * length, 0.09 * longest);
   const [ux, uy] = [dx / length, dy / length];
   const [bx, by] = [x - ux * head, -y - uy * head];
-  const d = `M${x - dx} ${-y - dy}L${x} ${-y}M${bx - uy * head / 2} ${by + ux * head / 2}L${x} ${-y}L${bx + uy * head / 2} ${by - ux * head / 2}`;
+  const d = `M${x - dx} ${-y - dy}L${x} ${-y}M${bx - uy * head / 3} ${by + ux * head / 3}L${x} ${-y}L${bx + uy * head / 3} ${by - ux * head / 3}`;
   return drawing("path", { class: "force", d, stroke: colour }, drawing("title", {}, `${numberText(force)} N`));
 }

@@ -27,4 +27,5 @@ schemeButton.addEventListener("click", () => {
 addEventListener("beforeprint", bowstringReport.drawAll);
 
 changed();
+bowstringReport.readyAfter = performance.now();  // ms since the page was asked for
 document.documentElement.dataset.ready = "true";

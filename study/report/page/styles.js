@@ -11,7 +11,7 @@ const termColours = ["#77aadd", "#ee8866", "#eedd88", "#ffaabb", "#99ddff", "#44
 const markers = ["circle", "rect", "triangle", "rectRot", "star", "cross", "rectRounded"];
 const dashes = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
 const statusColours = {
-  converged: "#009e73", invalid: "#e69f00", stalled: "#cc79a7", infeasible: "#d55e00", diverged: "#b3446c", failed: "#a3271f", refused: "#888888",
+  converged: "#009e73", invalid: "#e69f00", stalled: "#cc79a7", infeasible: "#d55e00", diverged: "#b3446c", failed: "#c0392b", refused: "#888888",
 };
 
 const schemes = ["automatic", "light", "dark"];
@@ -39,7 +39,7 @@ function lineStyle(line) {
   };
 }
 
-const statusColour = (status) => statusColours[status] ?? "#a3271f";
+const statusColour = (status) => statusColours[status] ?? "#c0392b";
 
 // Of cividis, which reads the same to every eye.
 const scaleStops = ["#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838"]

@@ -26,10 +26,8 @@ function errorText(error) {
 }
 
 /** 10⁻³, as an axis writes it. */
-function powerText(exponent) {
-  const raised = "⁰¹²³⁴⁵⁶⁷⁸⁹";
-  return "10" + String(exponent).replace("-", "⁻").replace(/\d/g, (digit) => raised[digit]);
-}
+const powerText = (exponent) => `10${raised(exponent)}`;
+const raised = (number) => String(number).replace("-", "⁻").replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
 
 /** What cuts a long text without losing its end, where names differ most. */
 function shortened(text, length) {

@@ -12,7 +12,8 @@ const view = {
 };
 
 const sections = [];
-const watchers = [];  // what is always in sight, and so never waits
+const watchers = [];        // what is always in sight, and so never waits
+const selectionMarks = [];  // what shows the selected run, but for the charts
 
 function passesAxis(axis, run) {
   const alternative = runs.choice[axis][run];
@@ -57,17 +58,29 @@ function changed() {
 }
 
 function redraw() {
-  for (const watcher of watchers) watcher();
-  for (const section of sections) {
-    section.isDrawn = false;
-    if (section.isNear) drawSection(section);
-  }
+  keepingFocus(() => {
+    for (const watcher of watchers) watcher();
+    for (const section of sections) {
+      section.isDrawn = false;
+      if (section.isNear) drawSection(section);
+    }
+  });
 }
 
 /** Marks a run in every plot and in the table; null unmarks. */
 function select(run) {
   view.selected = run;
-  redraw();
+  keepingFocus(() => selectionMarks.forEach((mark) => mark()));
+  for (const { chart } of Object.values(figures)) chart?.draw();
+}
+
+/** A figure makes its controls anew: whoever was at one by the keyboard is at its successor afterwards. */
+function keepingFocus(action) {
+  const holder = document.activeElement?.closest("figure, #runs");
+  const controlsOf = () => [...holder.querySelectorAll("button, select, input")];
+  const place = holder ? controlsOf().indexOf(document.activeElement) : -1;
+  action();
+  if (place >= 0 && !holder.contains(document.activeElement)) controlsOf()[place]?.focus({ preventScroll: true });
 }
 
 function drawSection(section) {
