@@ -15,8 +15,12 @@
 #include "apps/shell.hpp"
 #include "core/composition/read_file.hpp"
 #include "core/result/write_file.hpp"
+#include "study/analysis/analysis.hpp"
 #include "study/plan/plan.hpp"
+#include "study/report/report_json.hpp"
+#include "study/report/report_page.hpp"
 #include "study/results/collect.hpp"
+#include "study/results/collect_shapes.hpp"
 #include "study/results/results_table.hpp"
 #include "study/store/folder.hpp"
 #include "study/workers/pool.hpp"
@@ -143,27 +147,39 @@ void print_counts(const Plan& plan, const Collected& collected) {
               text.c_str());
 }
 
+/// results.csv and report.html; "" or why not.
+Status write_tables(const Plan& plan, const Folder& folder, const Collected& collected) {
+  const Status status = write_file(folder.file("results.csv"), study::results_csv(collected));
+  if (!status.ok()) return status;
+  const study::Analysis analysis = study::analyse(collected.data);
+  const study::Shapes shapes = study::collect_shapes(plan, collected, folder);
+  const std::string page = study::report_page(study::report_json(collected.data, analysis, shapes));
+  print_counts(plan, collected);
+  for (const study::Headline& headline : analysis.headlines) std::printf("  %s\n", headline.text.c_str());
+  return write_file(folder.file("report.html"), page);
+}
+
 /// Of all runs: whoever comes last among several commands sees them all.
 int write_results(const Plan& plan, const Folder& folder, study::Claims& claims) {
   claims.take_folder();
   const Collected collected = study::collect(plan, folder);
-  int code = exit_converged;
-  if (!collected.problems.empty()) {
-    const auto missing = collected.problems.size();
-    std::printf("%zu of %s there; results.csv and report.html come with the last one\n", plan.runs.size() - missing,
-                counted(static_cast<int>(plan.runs.size()), "run").c_str());
+  Status status;
+  if (collected.problems.empty()) {
+    status = write_tables(plan, folder, collected);
   } else {
-    const Status status = write_file(folder.file("results.csv"), study::results_csv(collected));
-    if (!status.ok()) {
-      complain(status.text);
-      code = exit_wrong_input;
-    } else {
-      print_counts(plan, collected);
-      std::printf("  %s\n", folder.file("results.csv").c_str());
-    }
+    std::printf("%zu of %s there; results.csv and report.html come with the last one\n",
+                plan.runs.size() - collected.problems.size(),
+                counted(static_cast<int>(plan.runs.size()), "run").c_str());
   }
   claims.leave_folder();
-  return code;
+  if (!status.ok()) {
+    complain(status.text);
+    return exit_wrong_input;
+  }
+  if (collected.problems.empty()) {
+    std::printf("  %s\n  %s\n", folder.file("results.csv").c_str(), folder.file("report.html").c_str());
+  }
+  return exit_converged;
 }
 
 }  // namespace
