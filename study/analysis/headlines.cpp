@@ -132,16 +132,16 @@ std::string instead_of(const StudyData& data, const Effect& effect) {
          (effect.from < 0 ? "the baseline" : axis.label[at(effect.from)]);
 }
 
+/// "12 % (95 %: 10…14 %)", in the direction of the mean.
 std::string amount_of(const StudyData& data, const Effect& effect) {
-  const double sign = effect.mean < 0.0 ? -1.0 : 1.0;
   const bool relative = std::isfinite(effect.relative);
-  const double size = relative ? effect.mean / effect.relative : 1.0;
-  const auto number = [&](double value) { return relative ? percent(value / size) : figure(value); };
-  std::string out = number(sign * effect.mean);
-  if (!relative) out = with_unit(out, data.quantities[at(effect.quantity)]);
-  if (effect.pairs < 2) return out;
-  const double ends[2] = {sign * effect.low, sign * effect.high};
-  return out + " (95 %: " + range_text(number(std::min(ends[0], ends[1])), number(std::max(ends[0], ends[1]))) + ")";
+  const double scale = (effect.mean < 0.0 ? -1.0 : 1.0) * (relative ? std::fabs(effect.relative / effect.mean) : 1.0);
+  const double amount = scale * effect.mean, one = scale * effect.low, other = scale * effect.high;
+  const double low = std::min(one, other), high = std::max(one, other);
+  const std::string middle =
+      relative ? percent(amount) : with_unit(figure(amount), data.quantities[at(effect.quantity)]);
+  if (effect.pairs < 2) return middle;
+  return middle + " (95 %: " + (relative ? percent_range(low, high) : range_text(figure(low), figure(high))) + ")";
 }
 
 std::string effect_words(const StudyData& data, const Effect& effect) {
