@@ -169,7 +169,8 @@ class Judge {
     if (std::isfinite(reference_) && std::isnan(fit_.beside)) {
       const double uncertain = extrapolation.ok() ? extrapolation.error : std::fabs(difference(end_ - 1));
       const Order order = order_of_errors(uncertain);
-      if (std::isfinite(order.low)) take(order);
+      const double own_width = fit_.order_high - fit_.order_low;
+      if (std::isfinite(order.low) && !(order.high - order.low >= own_width)) take(order);
     }
     fit_.text = (std::isnan(fit_.beside) ? "" : "settles, ") + order_words() + beside_text();
   }

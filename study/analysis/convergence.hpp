@@ -46,9 +46,10 @@ struct Sequence {
 /// not yet asymptotic are those coarser than the largest difference per e-fold of refinement, as long as three remain.
 ///
 /// What settles is at the reference unless its limit is further from it than twice what is left to its own limit, and
-/// than a tenth of `target_error`; then the order is that of the errors, ln |f − reference| over ln x, as far as they
-/// fall and exceed ten times what the limit's own uncertainty leaves of its distance from the reference, where those
-/// are three at least. A reference that is the finest value itself has x^−p of its own, which is taken off.
+/// than a tenth of `target_error`. Then the errors have an order too, ln |f − reference| over ln x, as far as they fall
+/// and exceed ten times what the limit's own uncertainty leaves of its distance from the reference, where those are
+/// three at least; a reference that is the finest value itself has x^−p of its own, which is taken off. Of the two
+/// orders the one with the narrower interval is told.
 Fit fit_convergence(const Sequence& sequence, double target_error);
 
 }  // namespace bowstring::study

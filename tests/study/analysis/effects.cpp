@@ -61,18 +61,33 @@ TEST_CASE("one at a time: everything against the baseline") {
 }
 
 TEST_CASE("pairs with a failed run do not count") {
-  StudyData data = study_of({words_axis("contact", {"a", "b"}), number_axis("N", {1, 2, 3})}, {"q_mm"});
-  data.along = 1;
+  StudyData data = study_of({words_axis("contact", {"a", "b"}), words_axis("vessel", {"c", "d", "e"})}, {"q_mm"});
   add_product(data);
   fill(data, 0, [](const StudyData&, const RunData& run) { return 1.0 + run.choice[0]; });
   fail(data, 0);
   fail(data, 4);
   const Effects effects = find_effects(data);
-  REQUIRE(effects.quantities.size() == 1);
+  REQUIRE_FALSE(effects.quantities.empty());
+  CHECK(effects.quantities[0].axis == 0);
   CHECK(effects.quantities[0].pairs == 1);
   CHECK(effects.quantities[0].largest_run == 5);
   fail(data, 5);
-  CHECK(find_effects(data).quantities.empty());
+  for (const Effect& effect : find_effects(data).quantities) CHECK(effect.axis == 1);
+}
+
+TEST_CASE("of a mesh study the finest pair counts") {
+  StudyData data = study_of(
+      {words_axis("contact", {"a", "b"}), number_axis("N", {20, 40, 80}), words_axis("vessel", {"c", "d"})}, {"q_mm"});
+  data.along = 1;
+  add_product(data);
+  fill(data, 0, [](const StudyData& d, const RunData& run) { return 1.0 + run.choice[0] * number(d, run, 1); });
+  fail(data, 4);  // a, 80, c
+  const Effects effects = find_effects(data);
+  REQUIRE_FALSE(effects.quantities.empty());
+  CHECK(effects.quantities[0].axis == 0);
+  CHECK(effects.quantities[0].pairs == 2);
+  CHECK(effects.quantities[0].mean == Approx(0.5 * (40.0 + 80.0)));
+  CHECK(effects.quantities[0].largest_run == 11);
 }
 
 TEST_CASE("an effect on what is 0 has no relative size and comes last") {

@@ -20,7 +20,8 @@ TEST_CASE("the anchoring study opens with what to use and what keeps it from con
   CHECK(analysis.headlines[1].text ==
         "What keeps peak_displacement_mm from converging is anchoring = per-node: 0 of 3 lines with it settle, 3 of 3 "
         "without (order 2.0)");
-  CHECK(analysis.headlines[1].detail.rfind("per-node, same-index: moves by 27 % with every doubling; ", 0) == 0);
+  CHECK(analysis.headlines[1].detail.rfind("per-node, same-index and 2 more: moves by 27 % with every doubling; ", 0) ==
+        0);
   CHECK(analysis.headlines[2].kind == HeadlineKind::effect);
   for (const Headline& h : analysis.headlines) CHECK(characters(h.text) <= headline_length);
 }
@@ -70,10 +71,10 @@ TEST_CASE("an ablation opens with its largest effect") {
   REQUIRE(analysis.headlines.size() == 1);
   CHECK(analysis.headlines[0].text ==
         "anchoring = per-node instead of the baseline lowers peak_displacement_mm by 31 %");
-  CHECK(
-      analysis.headlines[0].detail ==
-      "1 pair of converged runs; most, by -3.1 mm, at per-node. Then: contact = b instead of the baseline raises it by "
-      "1 %.");
+  CHECK(analysis.headlines[0].detail ==
+        "Over 1 pair of converged runs; most, by -3.1 mm, at per-node. Then: contact = b instead of the baseline "
+        "raises it by "
+        "1 %.");
 }
 
 TEST_CASE("an effect over several pairs has its interval") {
@@ -81,6 +82,19 @@ TEST_CASE("an effect over several pairs has its interval") {
   add_product(data);
   data.quantities[0].value = {10, 10, 10, 8, 8.1, 7.9};
   CHECK(analyse(data).headlines[0].text == "contact = b instead of a lowers q_mm by 20 % (95 %: 18…22 %)");
+}
+
+TEST_CASE("alternatives that change nothing") {
+  StudyData data = study_of({words_axis("kinematics", {"nodes", "frames", "both"})}, {"q_mm"});
+  add_product(data);
+  data.quantities[0].value = {10, 10 + 1e-9, 10};
+  CHECK(analyse(data).headlines[0].text == "No alternative changes q_mm");
+  data.quantities[0].value = {10, 10 + 1e-9, 11};
+  CHECK(analyse(data).headlines[0].text == "kinematics = both instead of nodes raises q_mm by 10 %");
+  CHECK(analyse(data).headlines[0].detail ==
+        "Over 1 pair of converged runs; most, by 1 mm, at both. Then: kinematics = frames instead of nodes leaves it "
+        "as it "
+        "is.");
 }
 
 TEST_CASE("a sample opens with its distribution, and warns of parameters that act alike") {
