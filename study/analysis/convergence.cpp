@@ -15,7 +15,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-12, equal_values = 1e-9;  // of the largest value
 constexpr double noise_of_difference = 1e-3, noise_of_value = 1e-5;
 constexpr double least_order = 0.5, least_last_order = 0.25;
-constexpr double above_offset = 3.0;  // times the distance of limit and reference: errors that tell an order
+constexpr double above_offset = 10.0;  // times the distance of limit and reference: errors that tell an order
 
 /// |f(a) − f(b)| at two resolutions; b infinite for an error.
 struct Difference {
@@ -111,16 +111,16 @@ class Judge {
   std::size_t above_rounding() const {
     std::size_t end = f_.size() - 1;
     while (end > 0 && std::fabs(difference(end - 1)) <= rounding * largest_) --end;
-    std::size_t least = 0;
-    double most = 0.0, after = 0.0;
-    for (std::size_t i = 0; i < end; ++i) {
-      most = std::max(most, std::fabs(difference(i)));
-      if (std::fabs(difference(i)) < std::fabs(difference(least))) least = i;
+    double most = 0.0;
+    for (std::size_t i = 0; i < end; ++i) most = std::max(most, std::fabs(difference(i)));
+    std::size_t first_small = end;
+    const double level = std::min(noise_of_difference * most, noise_of_value * largest_);
+    while (first_small > 0 && std::fabs(difference(first_small - 1)) <= level) --first_small;
+    for (std::size_t i = std::max<std::size_t>(first_small, 1); i < end; ++i) {
+      const double fall = difference(i - 1) / difference(i);
+      if (fall < std::sqrt(x_[i] / x_[i - 1])) return std::max<std::size_t>(i - 1, 2);
     }
-    for (std::size_t i = least; i < end; ++i) after = std::max(after, std::fabs(difference(i)));
-    const bool noise = least + 1 < end && std::fabs(difference(least)) <= noise_of_difference * most &&
-                       after <= noise_of_value * largest_;
-    return noise ? least : end;
+    return end;
   }
 
   static bool settles(const Order& own, const std::vector<Difference>& differences) {
@@ -167,15 +167,18 @@ class Judge {
     const Extrapolation extrapolation = extrapolate(x, f);
     settle_at(extrapolation.ok() ? extrapolation.limit : f.back());
     if (std::isfinite(reference_) && std::isnan(fit_.beside)) {
-      const Order order = order_of_errors();
-      if (std::isfinite(order.low)) take(order);
+      const double uncertain = extrapolation.ok() ? extrapolation.error : std::fabs(difference(end_ - 1));
+      const Order order = order_of_errors(uncertain);
+      const double own_width = fit_.order_high - fit_.order_low;
+      if (std::isfinite(order.low) && !(order.high - order.low >= own_width)) take(order);
     }
     fit_.text = (std::isnan(fit_.beside) ? "" : "settles, ") + order_words() + beside_text();
   }
 
-  Order order_of_errors() const {
+  Order order_of_errors(double uncertain) const {
     const bool own_reference = f_.back() == reference_;
-    const double level = own_reference ? 0.0 : above_offset * std::fabs(fit_.limit - reference_);
+    const double apart = std::max(std::fabs(fit_.limit - reference_) - uncertain, 0.0);
+    const double level = own_reference ? 0.0 : above_offset * apart;
     std::vector<Difference> errors;
     for (std::size_t i = 0; i <= end_ && !(own_reference && i + 1 == f_.size()); ++i) {
       const double size = std::fabs(f_[i] - reference_);
@@ -200,32 +203,32 @@ class Judge {
 
   Fit judge_moving() {
     fit_.verdict = Settling::does_not_settle;
-    bool rises = true, falls = true, positive = true, negative = true;
-    for (std::size_t i = 0; i < f_.size(); ++i) {
-      positive = positive && f_[i] > 0.0;
-      negative = negative && f_[i] < 0.0;
-      if (i + 1 < f_.size()) rises = rises && difference(i) > 0.0, falls = falls && difference(i) < 0.0;
+    const std::size_t first = finer_half();
+    const double way = difference(first), side = f_[first];
+    bool steady = true;
+    for (std::size_t i = first; i < f_.size(); ++i) {
+      steady = steady && f_[i] * side > 0.0 && (i + 1 == f_.size() || difference(i) * way > 0.0);
     }
-    fit_.text = (rises || falls) && (positive || negative)
-                    ? "moves by " + percent(per_doubling()) + " with every doubling"
-                    : "scatters by " + percent(scatter());
+    fit_.text =
+        steady ? "moves by " + percent(per_doubling()) + " with every doubling" : "scatters by " + percent(scatter());
     return fit_;
   }
+
+  /// Where it begins; of at least three values.
+  std::size_t finer_half() const { return std::min(f_.size() / 2, f_.size() - 3); }
 
   /// Of |f|, from the slope of ln |f| over ln x.
   double per_doubling() const {
     std::vector<double> log_x, log_f;
-    for (std::size_t i = 0; i < f_.size(); ++i) {
+    for (std::size_t i = finer_half(); i < f_.size(); ++i) {
       log_x.push_back(std::log(x_[i]));
       log_f.push_back(std::log(std::fabs(f_[i])));
     }
     return std::fabs(std::expm1(regress({log_x}, log_f).coefficient.at(0) * std::log(2.0)));
   }
 
-  /// Of the finer half, and at least of the last three values.
   double scatter() const {
-    const std::size_t first = std::min(f_.size() / 2, f_.size() - 3);
-    const auto [low, high] = std::minmax_element(f_.begin() + static_cast<std::ptrdiff_t>(first), f_.end());
+    const auto [low, high] = std::minmax_element(f_.begin() + static_cast<std::ptrdiff_t>(finer_half()), f_.end());
     return (*high - *low) / std::max(std::fabs(*low), std::fabs(*high));
   }
 

@@ -40,15 +40,16 @@ struct Sequence {
 /// *converges*: p > 0.5; the interval's lower end is above 0.5 or each difference falls with order above 0.5; and the
 /// finest three values have order above 0.25. Otherwise it *does not settle*.
 ///
-/// Left out are differences at the rounding level: those at the fine end within 1e-12 of the largest value, and all
-/// from the smallest on where that is not the last one, below 1e-3 of the largest difference and those after it below
-/// 1e-5 of the value. Left out as not yet asymptotic are those coarser than the largest difference per e-fold of
-/// refinement, as long as three remain.
+/// Left out are differences at the rounding level: those at the fine end within 1e-12 of the largest value; and where
+/// all from some point on are below 1e-3 of the largest difference and 1e-5 of the largest value, those from the first
+/// among them that turns back or falls with order below 0.5, and the one before it, as long as two remain. Left out as
+/// not yet asymptotic are those coarser than the largest difference per e-fold of refinement, as long as three remain.
 ///
 /// What settles is at the reference unless its limit is further from it than twice what is left to its own limit, and
-/// than a tenth of `target_error`; then the order is that of the errors, ln |f − reference| over ln x, as far as they
-/// exceed three times the distance between limit and reference, from three of them on. A reference that is the finest
-/// value itself has x^−p of its own, which is taken off.
+/// than a tenth of `target_error`. Then the errors have an order too, ln |f − reference| over ln x, as far as they fall
+/// and exceed ten times what the limit's own uncertainty leaves of its distance from the reference, where those are
+/// three at least; a reference that is the finest value itself has x^−p of its own, which is taken off. Of the two
+/// orders the one with the narrower interval is told.
 Fit fit_convergence(const Sequence& sequence, double target_error);
 
 }  // namespace bowstring::study

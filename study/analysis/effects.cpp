@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "study/analysis/lines.hpp"
@@ -15,55 +16,61 @@ constexpr std::size_t most_numbers = 6;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-struct Pair {
-  int from, to;  // runs
-};
+/// Runs that agree in all axes but one and the mesh: alternative → resolution, fine to coarse → run.
+using Group = std::map<int, std::map<double, int, std::greater<>>>;
 
-/// Alternative → run, for all runs that agree in the other axes.
-using Group = std::map<int, int>;
-
-std::vector<Group> groups_of(const StudyData& data, int axis) {
-  std::map<std::vector<int>, Group> groups;
-  for (int run = 0; run < static_cast<int>(data.runs.size()); ++run) {
-    std::vector<int> others = data.runs[at(run)].choice;
-    others[at(axis)] = 0;
-    groups[others].emplace(data.runs[at(run)].choice[at(axis)], run);
-  }
-  std::vector<Group> out;
-  for (const auto& [others, group] : groups) out.push_back(group);
-  return out;
-}
-
-std::vector<Pair> pairs_of(const std::vector<Group>& groups, int from, int to) {
-  std::vector<Pair> out;
-  for (const Group& group : groups) {
-    const auto one = group.find(from), other = group.find(to);
-    if (one != group.end() && other != group.end()) out.push_back({one->second, other->second});
-  }
-  return out;
-}
-
-/// Differences of the given numbers over those pairs that have both.
-void summarise(Effect& effect, const std::vector<Pair>& pairs, const std::vector<double>& value) {
-  std::vector<double> differences, sizes;
-  for (const Pair& pair : pairs) {
-    const double difference = value[at(pair.to)] - value[at(pair.from)];
-    if (!std::isfinite(difference)) continue;
-    if (differences.empty() || std::fabs(difference) > std::fabs(effect.largest)) {
-      effect.largest = difference;
-      effect.largest_run = pair.to;
+class Pairs {
+ public:
+  Pairs(const StudyData& data, int axis) {
+    const std::vector<double> resolution = data.along < 0 ? std::vector<double>{} : resolutions(data);
+    std::map<std::vector<int>, Group> groups;
+    for (int run = 0; run < static_cast<int>(data.runs.size()); ++run) {
+      std::vector<int> others = data.runs[at(run)].choice;
+      const int alternative = others[at(axis)], mesh = data.along < 0 ? -1 : others[at(data.along)];
+      others[at(axis)] = 0;
+      if (data.along >= 0) others[at(data.along)] = 0;
+      groups[others][alternative].emplace(mesh < 0 ? -1.0 : resolution[at(mesh)], run);
     }
-    differences.push_back(difference);
-    sizes.push_back(std::fabs(value[at(pair.from)]));
+    for (auto& [others, group] : groups) groups_.push_back(std::move(group));
   }
-  const MeanInterval interval = mean_interval(differences);
-  effect.pairs = static_cast<int>(differences.size());
-  effect.mean = interval.mean;
-  effect.low = interval.low;
-  effect.high = interval.high;
-  const double size = mean(sizes);
-  effect.relative = size > 0.0 ? interval.mean / size : std::nan("");
-}
+
+  bool any(int from, int to) const {
+    return std::any_of(groups_.begin(), groups_.end(),
+                       [&](const Group& group) { return group.count(from) > 0 && group.count(to) > 0; });
+  }
+
+  /// Differences of the given numbers over those pairs that have both.
+  void summarise(Effect& effect, const std::vector<double>& value) const {
+    std::vector<double> differences, sizes;
+    for (const Group& group : groups_) {
+      const auto one = group.find(effect.from), other = group.find(effect.to);
+      if (one == group.end() || other == group.end()) continue;
+      for (const auto& [mesh, run] : other->second) {
+        const auto partner = one->second.find(mesh);
+        if (partner == one->second.end()) continue;
+        const double difference = value[at(run)] - value[at(partner->second)];
+        if (!std::isfinite(difference)) continue;
+        if (differences.empty() || std::fabs(difference) > std::fabs(effect.largest)) {
+          effect.largest = difference;
+          effect.largest_run = run;
+        }
+        differences.push_back(difference);
+        sizes.push_back(std::fabs(value[at(partner->second)]));
+        break;
+      }
+    }
+    const MeanInterval interval = mean_interval(differences);
+    effect.pairs = static_cast<int>(differences.size());
+    effect.mean = interval.mean;
+    effect.low = interval.low;
+    effect.high = interval.high;
+    const double size = mean(sizes);
+    effect.relative = size > 0.0 ? interval.mean / size : std::nan("");
+  }
+
+ private:
+  std::vector<Group> groups_;
+};
 
 void turn_into_ratios(Effect& effect) {
   for (double* value : {&effect.mean, &effect.low, &effect.high, &effect.largest}) *value = std::exp(*value);
@@ -93,25 +100,21 @@ Effects find_effects(const StudyData& data) {
     const AxisData& axis = data.axes[at(a)];
     if (a == data.along || sampled(axis) || !varies(data, a)) continue;
     if (axis.numeric() && axis.label.size() > most_numbers) continue;
-    const std::vector<Group> groups = groups_of(data, a);
+    const Pairs pairs(data, a);
     for (int to = 0; to < static_cast<int>(axis.label.size()); ++to) {
       Effect effect;
       effect.axis = a;
+      effect.from = pairs.any(-1, to) ? -1 : 0;
       effect.to = to;
-      effect.from = -1;
-      std::vector<Pair> pairs = pairs_of(groups, -1, to);
-      if (pairs.empty()) {
-        effect.from = 0;
-        if (to > 0) pairs = pairs_of(groups, 0, to);
-      }
+      if (effect.from == to) continue;
       for (std::size_t q = 0; q < values.size(); ++q) {
         Effect own = effect;
         own.quantity = static_cast<int>(q);
-        summarise(own, pairs, values[q]);
+        pairs.summarise(own, values[q]);
         if (own.pairs > 0) out.quantities.push_back(own);
       }
       effect.quantity = Effect::solve_time;
-      summarise(effect, pairs, log_seconds);
+      pairs.summarise(effect, log_seconds);
       if (effect.pairs == 0) continue;
       turn_into_ratios(effect);
       out.times.push_back(effect);

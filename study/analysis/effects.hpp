@@ -29,8 +29,9 @@ struct Effects {
 };
 
 /// For every axis with alternatives that are no numbers or two to six of them, without the axis of convergence and
-/// samples: the paired differences from its first alternative, or from the runs in which it has no part where those
-/// pair up.
+/// samples: the differences from its first alternative, or from the runs in which it has no part where those pair up,
+/// over pairs of runs that agree in everything else. Of pairs that differ in the mesh alone the finest counts: what a
+/// coarse one adds to an effect is an error, and pairs that repeat each other would narrow the interval.
 Effects find_effects(const StudyData& data);
 
 }  // namespace bowstring::study

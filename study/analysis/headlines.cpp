@@ -13,7 +13,8 @@ namespace bowstring::study {
 
 namespace {
 
-constexpr std::size_t most_headlines = 5, most_listed = 12;
+constexpr double no_change = 1e-6;  // of a quantity's size: what solves to their tolerance differ by
+constexpr std::size_t most_headlines = 5, most_listed = 8;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -101,10 +102,28 @@ std::string convergence_words(const StudyData& data, const Analysis& analysis, c
          "; no axis tells which";
 }
 
+/// "per-node, nodes and 2 more: moves by 31 % with every doubling", lines with the same behaviour together.
+void add_behaviours(const std::vector<const Line*>& lines, std::vector<std::string>& parts) {
+  std::vector<std::pair<const Line*, int>> kinds;
+  for (const Line* line : lines) {
+    const auto known = std::find_if(kinds.begin(), kinds.end(),
+                                    [&](const auto& kind) { return kind.first->fits[0]->text == line->fits[0]->text; });
+    if (known == kinds.end()) {
+      kinds.emplace_back(line, 0);
+    } else {
+      ++known->second;
+    }
+  }
+  for (const auto& [first, more] : kinds) {
+    const std::string others = more > 0 ? " and " + std::to_string(more) + " more" : "";
+    parts.push_back(first->label + others + ": " + first->fits[0]->text);
+  }
+}
+
 std::string convergence_detail(const StudyData& data, const Analysis& analysis, const Tally& lines) {
   std::vector<std::string> parts;
   for (const std::vector<const Line*>* group : {&lines.moving, &lines.settling, &lines.unjudged}) {
-    for (const Line* line : *group) parts.push_back(line->label + ": " + line->fits[0]->text);
+    add_behaviours(*group, parts);
   }
   std::string out = listed(parts);
   std::vector<std::string> others;
@@ -132,40 +151,51 @@ std::string instead_of(const StudyData& data, const Effect& effect) {
          (effect.from < 0 ? "the baseline" : axis.label[at(effect.from)]);
 }
 
+/// "12 % (95 %: 10…14 %)", in the direction of the mean.
 std::string amount_of(const StudyData& data, const Effect& effect) {
-  const double sign = effect.mean < 0.0 ? -1.0 : 1.0;
   const bool relative = std::isfinite(effect.relative);
-  const double size = relative ? effect.mean / effect.relative : 1.0;
-  const auto number = [&](double value) { return relative ? percent(value / size) : figure(value); };
-  std::string out = number(sign * effect.mean);
-  if (!relative) out = with_unit(out, data.quantities[at(effect.quantity)]);
-  if (effect.pairs < 2) return out;
-  const double ends[2] = {sign * effect.low, sign * effect.high};
-  return out + " (95 %: " + range_text(number(std::min(ends[0], ends[1])), number(std::max(ends[0], ends[1]))) + ")";
+  const double scale = (effect.mean < 0.0 ? -1.0 : 1.0) * (relative ? std::fabs(effect.relative / effect.mean) : 1.0);
+  const double amount = scale * effect.mean, one = scale * effect.low, other = scale * effect.high;
+  const double low = std::min(one, other), high = std::max(one, other);
+  const std::string middle =
+      relative ? percent(amount) : with_unit(figure(amount), data.quantities[at(effect.quantity)]);
+  if (effect.pairs < 2) return middle;
+  return middle + " (95 %: " + (relative ? percent_range(low, high) : range_text(figure(low), figure(high))) + ")";
 }
 
-std::string effect_words(const StudyData& data, const Effect& effect) {
-  return instead_of(data, effect) + (effect.mean < 0.0 ? " lowers " : " raises ") +
-         data.quantities[at(effect.quantity)].column + " by " + amount_of(data, effect);
+bool changes(const Effect& effect) {
+  return std::isfinite(effect.relative) ? std::fabs(effect.relative) > no_change : effect.mean != 0.0;
+}
+
+std::string effect_words(const StudyData& data, const Effect& effect, const std::string& object) {
+  if (!changes(effect)) return instead_of(data, effect) + " leaves " + object + " as it is";
+  return instead_of(data, effect) + (effect.mean < 0.0 ? " lowers " : " raises ") + object + " by " +
+         amount_of(data, effect);
 }
 
 void add_effect(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
   std::vector<const Effect*> own;
   for (const Effect& effect : analysis.effects.quantities) {
-    if (effect.quantity == 0 && effect.mean != 0.0) own.push_back(&effect);
+    if (effect.quantity == 0) own.push_back(&effect);
   }
   if (own.empty()) return;
   const Effect& first = *own[0];
   const QuantityData& quantity = data.quantities[0];
-  std::string detail = counted(first.pairs, "pair") + " of converged runs; most, by " +
-                       with_unit(figure(first.largest), quantity) + ", at " +
-                       run_label(data, varying_axes(data), first.largest_run) + ".";
+  std::string detail = "Over " + counted(first.pairs, "pair") + " of converged runs";
+  if (data.along >= 0) detail += ", each on the finest mesh that both have";
+  if (changes(first)) {
+    detail += "; most, by " + with_unit(figure(first.largest), quantity) + ", at " +
+              run_label(data, varying_axes(data), first.largest_run);
+  }
+  detail += ".";
   std::vector<std::string> rest;
-  for (std::size_t k = 1; k < own.size(); ++k)
-    rest.push_back(instead_of(data, *own[k]) + " " + (own[k]->mean < 0 ? "lowers" : "raises") + " it by " +
-                   amount_of(data, *own[k]));
+  for (std::size_t k = 1; k < own.size(); ++k) rest.push_back(effect_words(data, *own[k], "it"));
   if (!rest.empty()) detail += " Then: " + listed(rest);
-  out.push_back({HeadlineKind::effect, effect_words(data, first), detail});
+  const bool none = std::none_of(own.begin(), own.end(), [](const Effect* effect) { return changes(*effect); });
+  out.push_back({HeadlineKind::effect,
+                 none && own.size() > 1 ? "No alternative changes " + quantity.column
+                                        : effect_words(data, first, quantity.column),
+                 detail});
 }
 
 std::string distribution_words(const StudyData& data, const Distribution& d) {

@@ -106,10 +106,15 @@ std::vector<double> resolutions(const StudyData& data) {
 int finest_mesh(const StudyData& data) {
   if (data.along < 0) return -1;
   const std::vector<double> resolution = resolutions(data);
-  int finest = -1;
+  std::vector<int> converged(resolution.size(), 0);
   for (const RunData& run : data.runs) {
     const int mesh = run.choice[at(data.along)];
-    if (!run.converged() || mesh < 0) continue;
+    if (mesh >= 0) converged[at(mesh)] += run.converged();
+  }
+  const int most = converged.empty() ? 0 : *std::max_element(converged.begin(), converged.end());
+  int finest = -1;
+  for (int mesh = 0; mesh < static_cast<int>(converged.size()); ++mesh) {
+    if (converged[at(mesh)] == 0 || 2 * converged[at(mesh)] < most) continue;
     if (finest < 0 || resolution[at(mesh)] > resolution[at(finest)]) finest = mesh;
   }
   return finest;

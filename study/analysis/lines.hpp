@@ -45,8 +45,8 @@ std::string run_label(const StudyData& data, const std::vector<int>& axes, int r
 /// fall as it rises; its index where it has no numbers above 0.
 std::vector<double> resolutions(const StudyData& data);
 
-/// The finest alternative of that axis with a converged run, −1 without such an axis or run. Runs at other ones are too
-/// coarse to tell sensitivities or a distribution.
+/// The finest alternative of that axis at which at least half as many runs have converged as at any; −1 without such an
+/// axis or runs. It is the one to tell sensitivities and distributions from.
 int finest_mesh(const StudyData& data);
 /// It is at the finest mesh, where there is one.
 bool at_mesh(const StudyData& data, int run, int mesh);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <set>
 
 #include "core/composition/nearest.hpp"
 #include "study/analysis/lines.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double noise_of_time = 1.2;
 constexpr std::size_t few_numbers = 6;
-constexpr std::size_t most_listed = 12;
+constexpr std::size_t most_listed = 8;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -149,7 +149,7 @@ class Finder {
 
   std::string target() const { return percent(data_.target_error); }
 
-  std::string choice_words() const {
+  std::string choice_words() {
     const std::vector<Candidate>& all = out_.candidates;
     const bool has_next = all.size() > 1 && all[1].reaches;
     const bool even = has_next && all[1].seconds <= noise_of_time * all[0].seconds;
@@ -161,11 +161,11 @@ class Finder {
     }
     const std::size_t next = even ? 2 : 1;
     if (next < all.size() && all[next].reaches) {
-      add_clause(out, ", " + times(all[next].seconds / all[0].seconds) + " faster than " + all[next].label,
+      add_clause(out, ", " + times(all[next].seconds / all[0].seconds) + " faster than " + compared(all[next]),
                  headline_length);
     }
-    const std::string losers = losers_words();
-    if (!losers.empty()) add_clause(out, "; " + losers, headline_length);
+    const std::string others = losers_words();
+    if (!others.empty() && !add_clause(out, "; " + others, headline_length)) left_out_ = others + ". ";
     return out;
   }
 
@@ -187,15 +187,40 @@ class Finder {
     return out;
   }
 
-  /// One alternative that all losers and nobody else has, or the only loser's label, or how many there are.
-  std::string losers_name(const std::vector<const Candidate*>& losers) const {
+  /// What tells a candidate from the first: "with segment-wise", or its label where they differ in more than one axis.
+  std::string compared(const Candidate& other) const {
+    int differing = 0;
+    std::size_t axis = 0;
     for (std::size_t k = 0; k < out_.axes.size(); ++k) {
-      const int alternative = losers[0]->choice[k];
-      const bool tells = std::all_of(out_.candidates.begin(), out_.candidates.end(),
-                                     [&](const Candidate& c) { return (c.choice[k] == alternative) == !c.reaches; });
-      if (tells) return short_choice_text(data_.axes[at(out_.axes[k])], alternative);
+      if (other.choice[k] != out_.candidates[0].choice[k]) ++differing, axis = k;
     }
-    return losers.size() == 1 ? losers[0]->label : std::to_string(losers.size()) + " others";
+    if (differing != 1 || out_.axes.size() == 1 || other.choice[axis] < 0) return other.label;
+    return "with " + short_choice_text(data_.axes[at(out_.axes[axis])], other.choice[axis]);
+  }
+
+  bool always_loses(std::size_t axis, int alternative) const {
+    return std::none_of(out_.candidates.begin(), out_.candidates.end(),
+                        [&](const Candidate& c) { return c.reaches && c.choice[axis] == alternative; });
+  }
+
+  /// One or two alternatives that all losers and nobody else have, or how many losers there are.
+  std::string losers_name(std::vector<const Candidate*> left, bool& several) const {
+    const std::size_t count = left.size();
+    std::vector<std::string> names;
+    for (std::size_t k = 0; k < out_.axes.size(); ++k) {
+      std::set<int> own;
+      for (const Candidate* c : left) {
+        if (always_loses(k, c->choice[k])) own.insert(c->choice[k]);
+      }
+      for (int alternative : own) names.push_back(short_choice_text(data_.axes[at(out_.axes[k])], alternative));
+      left.erase(
+          std::remove_if(left.begin(), left.end(), [&](const Candidate* c) { return own.count(c->choice[k]) > 0; }),
+          left.end());
+    }
+    const bool named = left.empty() && names.size() <= 2;
+    several = named ? names.size() > 1 : count > 1;
+    if (named) return joined(names, " and ");
+    return count == 1 ? losers().front()->label : std::to_string(count) + " others";
   }
 
   std::string losers_words() const {
@@ -205,8 +230,8 @@ class Finder {
     for (const Candidate* c : all) {
       if (c->points > 0) least = std::min(least, c->least_error);
     }
-    const std::string name = losers_name(all);
-    const bool several = all.size() > 1 && name.find(" others") != std::string::npos;
+    bool several = false;
+    const std::string name = losers_name(all, several);
     if (!std::isfinite(least)) return name + (several ? " have" : " has") + " no mesh on which all runs converge";
     if (least <= data_.target_error) return name + (several ? " do" : " does") + " not stay within " + target();
     return name + " never " + (several ? "get" : "gets") + " below " + percent(least);
@@ -232,7 +257,7 @@ class Finder {
     for (const Candidate& c : out_.candidates) {
       if (parts.size() < most_listed) parts.push_back(candidate_words(c));
     }
-    std::string out = "To bring " + data_.quantities[0].column + " within " + target() + " of " +
+    std::string out = left_out_ + "To bring " + data_.quantities[0].column + " within " + target() + " of " +
                       data_.quantities[0].reference_text +
                       ", and keep it there on finer meshes: " + joined(parts, "; ");
     if (parts.size() < out_.candidates.size()) {
@@ -247,6 +272,7 @@ class Finder {
   std::vector<double> resolution_;
   std::map<std::vector<int>, std::vector<Point>> formulations_;
   Recommendation out_;
+  std::string left_out_;  // of the text: too long
 };
 
 }  // namespace

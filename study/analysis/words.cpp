@@ -24,6 +24,10 @@ std::string figure(double value, int digits) { return formatted("%.*g", digits, 
 
 std::string percent(double share) { return two_digits(100.0 * share) + " %"; }
 
+std::string percent_range(double low, double high) {
+  return range_text(two_digits(100.0 * low), two_digits(100.0 * high)) + " %";
+}
+
 std::string seconds_text(double seconds) {
   return seconds < 0.0995 ? two_digits(1000.0 * seconds) + " ms" : two_digits(seconds) + " s";
 }

@@ -9,6 +9,8 @@ namespace bowstring::study {
 std::string figure(double value, int digits = 3);
 /// "12 %", "0.31 %" of a share.
 std::string percent(double share);
+/// "10…14 %", "12 %" where both read the same.
+std::string percent_range(double low, double high);
 /// "31 ms", "2.4 s", "310 s".
 std::string seconds_text(double seconds);
 /// "2.0", "1.98" of an order of convergence.
