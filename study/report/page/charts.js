@@ -20,8 +20,11 @@ function baseOptions() {
 
 function tooltipStyle() {
   return {
-    backgroundColor: pageColour("tip"), titleColor: pageColour("tip-ink"), bodyColor: pageColour("tip-ink"),
-    displayColors: false, padding: 10,
+    backgroundColor: pageColour("tip"),
+    titleColor: pageColour("tip-ink"),
+    bodyColor: pageColour("tip-ink"),
+    displayColors: false,
+    padding: 10,
   };
 }
 
@@ -67,14 +70,23 @@ function logScale(title, values, ticks = null) {
   const [min, max] = logRange(values);
   const places = ticks ?? logTicks(min, max);
   return scaleOf(title, {
-    type: "logarithmic", min, max,
-    afterBuildTicks: (scale) => { scale.ticks = places.map((value) => ({ value })); },
+    type: "logarithmic",
+    min,
+    max,
+    afterBuildTicks: (scale) => {
+      scale.ticks = places.map((value) => ({ value }));
+    },
     ticks: { callback: logTickText, autoSkip: ticks !== null, maxRotation: 0 },
   });
 }
 
 function linearScale(title, more = {}) {
-  return scaleOf(title, { type: "linear", grace: "4%", ...more, ticks: { callback: (value) => numberText(value, 6), maxTicksLimit: 8, ...more.ticks } });
+  return scaleOf(title, {
+    type: "linear",
+    grace: "4%",
+    ...more,
+    ticks: { callback: (value) => numberText(value, 6), maxTicksLimit: 8, ...more.ticks },
+  });
 }
 
 /** Whether positive numbers lie more evenly on a logarithmic scale: by where their median is. */
@@ -90,8 +102,12 @@ function axisScale(axis, places) {
   if (!isNumeric(axis)) {
     const count = axes[axis].labels.length;
     return linearScale(axisTitle(axis), {
-      min: -0.5, max: count - 0.5, grace: 0,
-      afterBuildTicks: (scale) => { scale.ticks = range(count).map((value) => ({ value })); },
+      min: -0.5,
+      max: count - 0.5,
+      grace: 0,
+      afterBuildTicks: (scale) => {
+        scale.ticks = range(count).map((value) => ({ value }));
+      },
       ticks: { callback: (value) => shortened(axes[axis].labels[value] ?? "", 18), maxTicksLimit: 40 },
     });
   }
@@ -156,4 +172,5 @@ function runTip(run, ...more) {
   ].filter(Boolean);
 }
 
-const withNumberUnit = (value, unit) => (isKnown(value) && unit ? `${numberText(value)} ${unitText(unit)}` : numberText(value));
+const withNumberUnit = (value, unit) =>
+  isKnown(value) && unit ? `${numberText(value)} ${unitText(unit)}` : numberText(value);
