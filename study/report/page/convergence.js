@@ -70,7 +70,7 @@ function drawErrorsAlong(figure) {
 
 /** The fitted orders of the formulations shown. */
 function orderTable(quantity) {
-  const fitted = range(lines.length).filter((line) => !view.hiddenLines.has(line) && lines[line].fits?.[quantity]);
+  const fitted = range(lines.length).filter((line) => isLineShown(line) && lines[line].fits?.[quantity]);
   if (!fitted.length) return [];
   const row = (line) => {
     const fit = lines[line].fits[quantity];

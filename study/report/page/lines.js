@@ -6,6 +6,7 @@ const crowd = 16; // from so many lines on, those that no headline speaks of are
 
 // The formulations that the most important headline speaks of: they are drawn above the others.
 const recommended = new Set(report.headlines.find(({ kind }) => kind === "recommendation")?.lines ?? []);
+const isLineShown = (line) => lines[line].runs.some((run) => view.isShown[run]);
 const byRecommendation = (lineA, lineB) => recommended.has(lineB) - recommended.has(lineA);
 
 /** The runs shown as groups to be drawn: formulations, and last what belongs to none. */
@@ -177,15 +178,17 @@ const alongText = (run) =>
 /** Formulations as buttons that show and hide them, everywhere. */
 function drawLegend(holder) {
   if (!lines.length) return;
-  const count = holder.dataset.all ? lines.length : Math.min(lines.length, mostLegendEntries);
-  const ordered = range(lines.length).sort(byRecommendation);
+  // What only the legend hides stays in it, to be shown again.
+  const listed = range(lines.length).filter((line) => isLineShown(line) || view.hiddenLines.has(line));
+  const count = holder.dataset.all ? listed.length : Math.min(listed.length, mostLegendEntries);
+  const ordered = listed.sort(byRecommendation);
   const entries = ordered.slice(0, count).map(legendEntry);
-  if (count < lines.length) {
+  if (count < listed.length) {
     const showAll = () => {
       holder.dataset.all = "true";
       drawLegend(holder);
     };
-    entries.push(button(`and ${wholeText(lines.length - count)} more`, showAll, { class: "link" }));
+    entries.push(button(`and ${wholeText(listed.length - count)} more`, showAll, { class: "link" }));
   }
   holder.replaceChildren(...entries);
 }

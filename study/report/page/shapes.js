@@ -14,7 +14,9 @@ function buildShapes(root) {
     plane.draw();
     figure.tools.replaceChildren(...shapeTools(plane));
     figure.legend.replaceChildren(
-      ...report.shapes.map((shape, index) => shapeEntry(shape, index, chosen)),
+      ...range(report.shapes.length)
+        .filter(isShapeShown)
+        .map((index) => shapeEntry(report.shapes[index], index, chosen)),
       ...shapeKeys(),
     );
     const largest = largestForce();
@@ -28,6 +30,8 @@ function buildShapes(root) {
     );
   };
 }
+
+const isShapeShown = (index) => view.isShown[report.shapes[index].run] === 1;
 
 function shapeEntry({ label, run }, index, chosen) {
   const entry = button(
@@ -73,6 +77,7 @@ function shapeKeys() {
 
 function shapeRows(chosen) {
   return [...chosen]
+    .filter(isShapeShown)
     .sort((a, b) => a - b)
     .flatMap((index) => {
       const { run, curves, contacts } = report.shapes[index];
@@ -117,7 +122,9 @@ function shapeWindow(figure, chosen) {
   };
   const draw = () => {
     picture.style.aspectRatio = `${Math.max(all.width, 1.2 * all.height)} / ${all.height}`;
-    picture.replaceChildren(...[...chosen].map((index) => shapeDrawing(report.shapes[index], shapeColour(index), all)));
+    picture.replaceChildren(
+      ...[...chosen].filter(isShapeShown).map((index) => shapeDrawing(report.shapes[index], shapeColour(index), all)),
+    );
     place();
   };
   const zoom = (factor, x = seen.x + seen.width / 2, y = seen.y + seen.height / 2) => {

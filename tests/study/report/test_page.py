@@ -96,6 +96,10 @@ class Convergence(Page):
         self.assertTrue(set(self.points("main")) <= set(left))
         self.assertEqual(self.value("text('.shown-count')"), f"{len(left)} of 36 runs")
         self.assertIn(f"{len(left)} runs of {len(left)}", self.value("figures.failures.heading.textContent"))
+        formulations = {line["label"] for line in self.report["lines"] if set(line["runs"]) & set(left)}
+        self.assertEqual({row[0] for row in self.value("cells('.orders tbody tr')")}, formulations)
+        self.assertEqual(self.value("figures.main.legend.querySelectorAll('.entry').length"), len(formulations))
+        self.assertEqual(self.value("count('.shapes .wire')"), 0)
         self.do("find('.reset').click();")
         self.assertEqual(len(self.listed()), 36)
 
