@@ -62,7 +62,9 @@ function logTicks(low, high) {
 function logTickText(value) {
   const exponent = Math.log10(value);
   if (value >= 1e-2 && value < 1e4) return numberText(value, 3);
-  return Number.isInteger(Math.round(exponent * 1e9) / 1e9) ? powerText(Math.round(exponent)) : numberText(value, 2);
+  const whole = Math.floor(exponent + 1e-9);
+  const digits = value / 10 ** whole;
+  return digits < 1.001 ? powerText(whole) : `${numberText(digits, 2)}·${powerText(whole)}`;
 }
 
 /** A logarithmic scale over `values`, or at the `ticks` given. */
@@ -76,7 +78,7 @@ function logScale(title, values, ticks = null) {
     afterBuildTicks: (scale) => {
       scale.ticks = places.map((value) => ({ value }));
     },
-    ticks: { callback: logTickText, autoSkip: ticks !== null, maxRotation: 0 },
+    ticks: { callback: logTickText, maxRotation: 0 },
   });
 }
 
