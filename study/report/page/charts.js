@@ -100,7 +100,7 @@ function isSpreadByFactors(numbers) {
 }
 
 /** The scale of an axis of the study: its numbers, or its alternatives side by side. */
-function axisScale(axis, places) {
+function axisScale(axis, places, isLogarithmic = isSpreadByFactors(places.filter(isKnown))) {
   if (!isNumeric(axis)) {
     const count = axes[axis].labels.length;
     return linearScale(axisTitle(axis), {
@@ -114,7 +114,7 @@ function axisScale(axis, places) {
     });
   }
   const known = places.filter(isKnown);
-  if (!isSpreadByFactors(known)) return linearScale(axisTitle(axis));
+  if (!isLogarithmic) return linearScale(axisTitle(axis));
   const numbers = [...new Set(known)].sort((a, b) => a - b);
   return logScale(axisTitle(axis), known, numbers.length <= 12 ? numbers : null);
 }

@@ -54,6 +54,7 @@ function drawErrorsAlong(figure) {
       x: axisScale(
         along,
         points.map(({ x }) => x),
+        points.every(({ x }) => x > 0),
       ),
       y: logScale(
         errorTitle(quantity),

@@ -2,6 +2,7 @@
 
 const mostPoints = 4000;
 const mostLegendEntries = 24;
+const longestName = 72; // in a legend, in characters
 const crowd = 16; // from so many lines on, those that no headline speaks of are faint
 
 // The formulations that the most important headline speaks of: they are drawn above the others.
@@ -200,7 +201,7 @@ function legendEntry(line) {
     "aria-pressed": String(!view.hiddenLines.has(line)),
     title: `${lines[line].label}: show or hide`,
   });
-  entry.append(swatch(line), element("span", { class: "name" }, lines[line].label));
+  entry.append(swatch(line), element("span", { class: "name" }, shortened(lines[line].label, longestName)));
   if (recommended.has(line)) entry.append(element("span", { class: "badge", title: "recommended" }, "★"));
   if (failures)
     entry.append(element("span", { class: "failures", title: "runs that did not converge" }, `✕ ${failures}`));

@@ -48,7 +48,7 @@ function shapeEntry({ label, run }, index, chosen) {
   );
   entry.append(
     element("i", { class: "dot", style: `background: ${shapeColour(index)}` }),
-    element("span", { class: "name" }, label || describeRun(run)),
+    element("span", { class: "name" }, shortened(label || describeRun(run), longestName)),
   );
   return entry;
 }
