@@ -419,7 +419,8 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     with browsers.Browser() as Page.browser:
         result = unittest.main(argv=[sys.argv[0], *others], exit=False).result
-    bad = len(result.failures) + len(result.errors)
+    # Subtests that failed are one case.
+    bad = len({getattr(case, "test_case", case).id() for case, _ in result.failures + result.errors})
     print(f"{result.testsRun - bad} passed, {bad} failed")
     return 1 if bad else 0
 
