@@ -20,11 +20,13 @@ def element(name, kind):
     """The text of a file that is to stand inside <script> or <style>."""
     text = read(name).strip()
     if re.search(rf"</{kind}|<!--", text, re.IGNORECASE):
-        sys.exit(f"{name}: holds </{kind} or <!--; expected text that cannot end its <{kind}> element; write it in parts")
+        sys.exit(f"{name}: holds </{kind} or <!--; expected nothing that can end its element; write it in parts")
     return text
 
 
 def literal(text):
+    if f'){DELIMITER}"' in text:
+        sys.exit(f"a part of the page holds ){DELIMITER}\"; expected nothing that ends a C++ literal; write it in parts")
     return f'R"{DELIMITER}({text}){DELIMITER}"'
 
 

@@ -20,8 +20,11 @@ function baseOptions() {
 
 function tooltipStyle() {
   return {
-    backgroundColor: pageColour("tip"), titleColor: pageColour("tip-ink"), bodyColor: pageColour("tip-ink"),
-    displayColors: false, padding: 10,
+    backgroundColor: pageColour("tip"),
+    titleColor: pageColour("tip-ink"),
+    bodyColor: pageColour("tip-ink"),
+    displayColors: false,
+    padding: 10,
   };
 }
 
@@ -59,7 +62,9 @@ function logTicks(low, high) {
 function logTickText(value) {
   const exponent = Math.log10(value);
   if (value >= 1e-2 && value < 1e4) return numberText(value, 3);
-  return Number.isInteger(Math.round(exponent * 1e9) / 1e9) ? powerText(Math.round(exponent)) : numberText(value, 2);
+  const whole = Math.floor(exponent + 1e-9);
+  const digits = value / 10 ** whole;
+  return digits < 1.001 ? powerText(whole) : `${numberText(digits, 2)}·${powerText(whole)}`;
 }
 
 /** A logarithmic scale over `values`, or at the `ticks` given. */
@@ -67,14 +72,23 @@ function logScale(title, values, ticks = null) {
   const [min, max] = logRange(values);
   const places = ticks ?? logTicks(min, max);
   return scaleOf(title, {
-    type: "logarithmic", min, max,
-    afterBuildTicks: (scale) => { scale.ticks = places.map((value) => ({ value })); },
-    ticks: { callback: logTickText, autoSkip: ticks !== null, maxRotation: 0 },
+    type: "logarithmic",
+    min,
+    max,
+    afterBuildTicks: (scale) => {
+      scale.ticks = places.map((value) => ({ value }));
+    },
+    ticks: { callback: logTickText, maxRotation: 0 },
   });
 }
 
 function linearScale(title, more = {}) {
-  return scaleOf(title, { type: "linear", grace: "4%", ...more, ticks: { callback: (value) => numberText(value, 6), maxTicksLimit: 8, ...more.ticks } });
+  return scaleOf(title, {
+    type: "linear",
+    grace: "4%",
+    ...more,
+    ticks: { callback: (value) => numberText(value, 6), maxTicksLimit: 8, ...more.ticks },
+  });
 }
 
 /** Whether positive numbers lie more evenly on a logarithmic scale: by where their median is. */
@@ -86,17 +100,21 @@ function isSpreadByFactors(numbers) {
 }
 
 /** The scale of an axis of the study: its numbers, or its alternatives side by side. */
-function axisScale(axis, places) {
+function axisScale(axis, places, isLogarithmic = isSpreadByFactors(places.filter(isKnown))) {
   if (!isNumeric(axis)) {
     const count = axes[axis].labels.length;
     return linearScale(axisTitle(axis), {
-      min: -0.5, max: count - 0.5, grace: 0,
-      afterBuildTicks: (scale) => { scale.ticks = range(count).map((value) => ({ value })); },
+      min: -0.5,
+      max: count - 0.5,
+      grace: 0,
+      afterBuildTicks: (scale) => {
+        scale.ticks = range(count).map((value) => ({ value }));
+      },
       ticks: { callback: (value) => shortened(axes[axis].labels[value] ?? "", 18), maxTicksLimit: 40 },
     });
   }
   const known = places.filter(isKnown);
-  if (!isSpreadByFactors(known)) return linearScale(axisTitle(axis));
+  if (!isLogarithmic) return linearScale(axisTitle(axis));
   const numbers = [...new Set(known)].sort((a, b) => a - b);
   return logScale(axisTitle(axis), known, numbers.length <= 12 ? numbers : null);
 }
@@ -156,4 +174,5 @@ function runTip(run, ...more) {
   ].filter(Boolean);
 }
 
-const withNumberUnit = (value, unit) => (isKnown(value) && unit ? `${numberText(value)} ${unitText(unit)}` : numberText(value));
+const withNumberUnit = (value, unit) =>
+  isKnown(value) && unit ? `${numberText(value)} ${unitText(unit)}` : numberText(value);

@@ -2,7 +2,10 @@
 
 const mostBars = 20;
 
-const effectName = ({ axis, from, to }) => `${axes[axis].name}: ${axes[axis].labels[from]} → ${axes[axis].labels[to]}`;
+function effectName({ axis, from, to }) {
+  const { name, labels } = axes[axis];
+  return `${name}: ${labels[from]} → ${labels[to]}`;
+}
 
 function buildEffects(root) {
   const words = element("p", { class: "lead" });
@@ -17,11 +20,15 @@ function buildEffects(root) {
 
 const ownEffects = () => report.effects.filter(({ quantity }) => quantity === view.quantity);
 
-function effectWords(effect) {
-  const { unit } = quantities[effect.quantity];
-  const relative = isKnown(effect.relative) ? ` (${signedText(100 * effect.relative, 3)} % of its mean size)` : "";
-  return `What changed ${quantityName(effect.quantity)} most: ${axes[effect.axis].name} from ${axes[effect.axis].labels[effect.from]} to `
-    + `${axes[effect.axis].labels[effect.to]}, by ${signedText(effect.mean, 3)}${unit ? ` ${unitText(unit)}` : ""}${relative} on average over ${counted(effect.pairs, "pair")}.`;
+function effectWords({ axis, from, to, quantity, mean, relative, pairs }) {
+  const { name, labels } = axes[axis];
+  const { unit } = quantities[quantity];
+  const change = `${signedText(mean, 3)}${unit ? ` ${unitText(unit)}` : ""}`;
+  const share = isKnown(relative) ? ` (${signedText(100 * relative, 3)} % of its mean size)` : "";
+  return (
+    `What changed ${quantityName(quantity)} most: ${name} from ${labels[from]} to ${labels[to]}, ` +
+    `by ${change}${share} on average over ${counted(pairs, "pair")}.`
+  );
 }
 
 function drawEffects(figure) {
@@ -29,37 +36,70 @@ function drawEffects(figure) {
   const shown = own.slice(0, mostBars);
   const title = `Change of ${quantityTitle(view.quantity)}`;
   figure.showTitle(`Effects on ${quantityName(view.quantity)}, the largest first`);
-  figure.box.style.height = `${Math.max(shown.length * 34, 60) + 70}px`;
   const options = baseOptions();
   Object.assign(options, { indexAxis: "y", interaction: { mode: "y", intersect: false } });
   options.scales = {
-    x: linearScale(title, { suggestedMin: Math.min(...shown.map(({ low }) => low ?? 0), 0), suggestedMax: Math.max(...shown.map(({ high }) => high ?? 0), 0) }),
-    y: scaleOf("", { type: "category", title: { display: false }, ticks: { autoSkip: false, callback: (value) => barLabel(effectName(shown[value]), figure) } }),
+    x: linearScale(title, {
+      suggestedMin: Math.min(...shown.map(({ low }) => low ?? 0), 0),
+      suggestedMax: Math.max(...shown.map(({ high }) => high ?? 0), 0),
+    }),
+    y: scaleOf("", {
+      type: "category",
+      title: { display: false },
+      ticks: { autoSkip: false, callback: (value) => barLabel(effectName(shown[value]), figure) },
+    }),
   };
   options.plugins.tooltip.callbacks = {
     title: ([item]) => (item ? wrapped(effectName(shown[item.dataIndex]), 60) : ""),
     label: ({ dataIndex }) => effectTip(shown[dataIndex]),
   };
   const bars = shown.map((effect, index) => ({ x: effect.mean, y: index, run: effect.largest_run }));
-  figure.showChart({
-    type: "bar",
-    data: {
-      labels: shown.map((_, index) => index),
-      datasets: [{ label: title, data: bars, backgroundColor: shown.map(({ mean }) => pageColour(mean < 0 ? "negative" : "positive")), maxBarThickness: 22 }],
+  figure.showChart(
+    {
+      type: "bar",
+      data: {
+        labels: shown.map((_, index) => index),
+        datasets: [
+          {
+            label: title,
+            data: bars,
+            backgroundColor: shown.map(({ mean }) => pageColour(mean < 0 ? "negative" : "positive")),
+            maxBarThickness: 22,
+          },
+        ],
+      },
+      options,
+      plugins: [intervalMarks(shown)],
     },
-    options, plugins: [intervalMarks(shown)],
-  });
-  figure.showNote("Whiskers: 95 % intervals of the mean.", own.length > shown.length ? `The ${shown.length} largest of ${own.length}; the others are in the data.` : "",
-    isFiltered() ? "Effects are of all runs, whatever the filters." : "");
-  figure.showData(["axis", "from", "to", "pairs", "mean", "low", "high", "relative", "largest", "largest run"], () => own.map((effect) => [
-    axes[effect.axis].name, axes[effect.axis].labels[effect.from], axes[effect.axis].labels[effect.to], effect.pairs, effect.mean, effect.low, effect.high,
-    effect.relative, effect.largest, effect.largest_run]));
+    Math.max(shown.length * 34, 60) + 70,
+  );
+  figure.showNote(
+    "Whiskers: 95 % intervals of the mean.",
+    own.length > shown.length ? `The ${shown.length} largest of ${own.length}; the others are in the data.` : "",
+    isFiltered() ? "Effects are of all runs, whatever the filters." : "",
+  );
+  figure.showData(["axis", "from", "to", "pairs", "mean", "low", "high", "relative", "largest", "largest run"], () =>
+    own.map((effect) => [
+      axes[effect.axis].name,
+      axes[effect.axis].labels[effect.from],
+      axes[effect.axis].labels[effect.to],
+      effect.pairs,
+      effect.mean,
+      effect.low,
+      effect.high,
+      effect.relative,
+      effect.largest,
+      effect.largest_run,
+    ]),
+  );
 }
 
 function effectTip({ mean, low, high, pairs, relative, largest, largest_run: run }) {
   return [
-    `mean change: ${signedText(mean)} [${numberText(low)}, ${numberText(high)}]`, `relative: ${isKnown(relative) ? percentText(relative) : unknownText}`,
-    `pairs: ${pairs}`, `largest: ${signedText(largest)}${isKnown(run) ? ` (run ${run})` : ""}`,
+    `mean change: ${signedText(mean)} [${numberText(low)}, ${numberText(high)}]`,
+    `relative: ${isKnown(relative) ? percentText(relative) : unknownText}`,
+    `pairs: ${pairs}`,
+    `largest: ${signedText(largest)}${isKnown(run) ? ` (run ${run})` : ""}`,
   ];
 }
 
@@ -79,11 +119,18 @@ const intervalMarks = (effects) => ({
     ctx.lineWidth = 1.5;
     effects.forEach(({ low, high }, index) => {
       if (!isKnown(low) || !isKnown(high)) return;
-      const [from, to, y] = [scales.x.getPixelForValue(low), scales.x.getPixelForValue(high), scales.y.getPixelForValue(index)];
+      const [from, to, y] = [
+        scales.x.getPixelForValue(low),
+        scales.x.getPixelForValue(high),
+        scales.y.getPixelForValue(index),
+      ];
       ctx.beginPath();
-      ctx.moveTo(from, y - 5); ctx.lineTo(from, y + 5);
-      ctx.moveTo(from, y); ctx.lineTo(to, y);
-      ctx.moveTo(to, y - 5); ctx.lineTo(to, y + 5);
+      ctx.moveTo(from, y - 5);
+      ctx.lineTo(from, y + 5);
+      ctx.moveTo(from, y);
+      ctx.lineTo(to, y);
+      ctx.moveTo(to, y - 5);
+      ctx.lineTo(to, y + 5);
       ctx.stroke();
     });
     ctx.restore();

@@ -20,8 +20,11 @@ function fill(made, properties, children) {
 }
 
 function picker(label, options, chosen, onPick) {
-  const select = element("select", { onchange: () => onPick(select.value) },
-    options.map(([value, text]) => element("option", { value, selected: String(value) === String(chosen) }, text)));
+  const select = element(
+    "select",
+    { onchange: () => onPick(select.value) },
+    options.map(([value, text]) => element("option", { value, selected: String(value) === String(chosen) }, text)),
+  );
   return element("label", { class: "picker" }, element("span", {}, label), select);
 }
 
@@ -31,14 +34,30 @@ function button(text, onclick, properties = {}) {
 
 function table(columns, rows, properties = {}) {
   const isNumber = (cell) => typeof cell === "number" || cell === null;
-  const cell = (value) => element("td", { class: isNumber(value) ? "number" : null },
-    value instanceof Node ? value : cellText(value));
-  return element("table", properties,
-    element("thead", {}, element("tr", {}, columns.map((column) => element("th", { scope: "col" }, column)))),
-    element("tbody", {}, rows.map((row) => element("tr", {}, row.map(cell)))));
+  const cell = (value) =>
+    element("td", { class: isNumber(value) ? "number" : null }, value instanceof Node ? value : cellText(value));
+  return element(
+    "table",
+    properties,
+    element(
+      "thead",
+      {},
+      element(
+        "tr",
+        {},
+        columns.map((column) => element("th", { scope: "col" }, column)),
+      ),
+    ),
+    element(
+      "tbody",
+      {},
+      rows.map((row) => element("tr", {}, row.map(cell))),
+    ),
+  );
 }
 
-const tableFrame = (content, label) => element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label }, content);
+const tableFrame = (content, label) =>
+  element("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": label }, content);
 
 function download(name, text) {
   const address = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
@@ -48,7 +67,9 @@ function download(name, text) {
 
 /** Runs as links that select them, the first few of many. */
 function runLinks(list, most = 20) {
-  const links = list.slice(0, most).map((run) => button(`run ${run}`, () => select(run), { class: "link", title: describeRun(run) }));
+  const links = list
+    .slice(0, most)
+    .map((run) => button(`run ${run}`, () => select(run), { class: "link", title: describeRun(run) }));
   const spaced = links.flatMap((link) => [link, " "]);
   return list.length > most ? [...spaced, `and ${wholeText(list.length - most)} more`] : spaced;
 }

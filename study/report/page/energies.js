@@ -7,10 +7,11 @@ function buildEnergies(root) {
   return () => drawEnergies(figure);
 }
 
-/** Of each formulation the finest run shown; without formulations the first ones. */
+/** Of each formulation the finest run shown, the recommended ones first; without formulations the first runs. */
 function energyRuns() {
   const has = (run) => report.energies.some(({ values }) => isKnown(values[run]));
-  const finest = shownGroups().flatMap(({ line, runs: list }) => {
+  const groups = shownGroups().sort((a, b) => byRecommendation(a.line, b.line));
+  const finest = groups.flatMap(({ line, runs: list }) => {
     const known = list.filter(has);
     return line >= 0 && report.along !== null ? known.slice(-1) : known;
   });
@@ -18,35 +19,77 @@ function energyRuns() {
 }
 
 /** The axes in which these runs differ: what tells them apart in few words. */
-const differingAxes = (list) => range(axes.length).filter((axis) => new Set(list.map((run) => runs.choice[axis][run])).size > 1);
+const differingAxes = (list) =>
+  range(axes.length).filter((axis) => new Set(list.map((run) => runs.choice[axis][run])).size > 1);
 
 function drawEnergies(figure) {
   const { chosen, count } = energyRuns();
   const differing = differingAxes(chosen);
-  const nameOf = (run) => (differing.length ? differing.filter((axis) => runs.choice[axis][run] >= 0).map((axis) => alternativeOf(axis, run)).join(", ") : `run ${run}`);
+  const nameOf = (run) =>
+    differing.length
+      ? differing
+          .filter((axis) => runs.choice[axis][run] >= 0)
+          .map((axis) => alternativeOf(axis, run))
+          .join(", ")
+      : `run ${run}`;
   figure.showTitle("Energy by term");
-  figure.box.style.height = `${chosen.length * 30 + 80}px`;
   const options = baseOptions();
   Object.assign(options, { indexAxis: "y", interaction: { mode: "y", intersect: false } });
   options.scales = {
     x: linearScale("Energy (N mm)", { stacked: true }),
-    y: scaleOf("", { type: "category", stacked: true, title: { display: false }, ticks: { autoSkip: false, callback: (value) => barLabel(nameOf(chosen[value]), figure) } }),
+    y: scaleOf("", {
+      type: "category",
+      stacked: true,
+      title: { display: false },
+      ticks: { autoSkip: false, callback: (value) => barLabel(nameOf(chosen[value]), figure) },
+    }),
   };
   options.plugins.tooltip.callbacks = {
-    title: ([item]) => (item ? [`run ${chosen[item.dataIndex]}: ${runs.status[chosen[item.dataIndex]]}`, ...wrapped(describeRun(chosen[item.dataIndex]), 60)] : ""),
+    title: ([item]) =>
+      item
+        ? [
+            `run ${chosen[item.dataIndex]}: ${runs.status[chosen[item.dataIndex]]}`,
+            ...wrapped(describeRun(chosen[item.dataIndex]), 60),
+          ]
+        : "",
     label: (item) => `${item.dataset.label}: ${numberText(item.raw.x)} N mm`,
   };
   const datasets = report.energies.map(({ term, values }, index) => ({
-    label: term, backgroundColor: termColours[index % termColours.length], borderColor: pageColour("ground"), borderWidth: 1, maxBarThickness: 20,
+    label: term,
+    backgroundColor: termColours[index % termColours.length],
+    borderColor: pageColour("ground"),
+    borderWidth: 1,
+    maxBarThickness: 20,
     data: chosen.map((run, place) => ({ x: values[run], y: place, run })),
   }));
-  figure.showChart({ type: "bar", data: { labels: chosen.map((_, place) => place), datasets }, options });
-  figure.legend.replaceChildren(...report.energies.map(({ term }, index) => element("span", { class: "entry-text" },
-    element("i", { class: "dot", style: `background: ${termColours[index % termColours.length]}` }), term)));
+  figure.showChart(
+    { type: "bar", data: { labels: chosen.map((_, place) => place), datasets }, options },
+    chosen.length * 30 + 80,
+  );
+  figure.legend.replaceChildren(
+    ...report.energies.map(({ term }, index) =>
+      element(
+        "span",
+        { class: "entry-text" },
+        element("i", { class: "dot", style: `background: ${termColours[index % termColours.length]}` }),
+        term,
+      ),
+    ),
+  );
   const which = report.along === null ? "" : `Of each formulation its finest run shown, by ${axes[report.along].name}.`;
   const failed = chosen.filter((run) => !converged(run));
-  figure.showNote(which, count > chosen.length ? `The first ${chosen.length} of ${wholeText(count)}.` : "",
-    failed.length ? `Not converged: ${failed.map((run) => `run ${run}`).join(", ")}.` : "");
-  figure.showData(["run", ...axes.map(({ column }) => column), ...report.energies.map(({ term }) => `${term} (N mm)`)],
-    () => chosen.map((run) => [run, ...axes.map((_, axis) => valueOf(axis, run)), ...report.energies.map(({ values }) => values[run])]));
+  figure.showNote(
+    which,
+    count > chosen.length ? `The first ${chosen.length} of ${wholeText(count)}.` : "",
+    failed.length ? `Not converged: ${failed.map((run) => `run ${run}`).join(", ")}.` : "",
+  );
+  figure.showData(
+    ["run", ...axes.map(({ column }) => column), ...report.energies.map(({ term }) => `${term} (N mm)`)],
+    () =>
+      chosen.map((run) => [
+        run,
+        ...axes.map((_, axis) => valueOf(axis, run)),
+        ...report.energies.map(({ values }) => values[run]),
+      ]),
+  );
 }

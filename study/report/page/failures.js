@@ -2,8 +2,11 @@
 
 /** [{status, reason, list}] of these runs, the most frequent first. */
 function outcomes(list) {
-  return groupBy(list, (run) => `${runs.status[run]}\n${runs.reason[run] ?? ""}`)
-    .map(([, group]) => ({ status: runs.status[group[0]], reason: runs.reason[group[0]] || "without a reason", list: group }));
+  return groupBy(list, (run) => `${runs.status[run]}\n${runs.reason[run] ?? ""}`).map(([, group]) => ({
+    status: runs.status[group[0]],
+    reason: runs.reason[group[0]] || "without a reason",
+    list: group,
+  }));
 }
 
 const failedRuns = range(runCount).filter((run) => !converged(run));
@@ -15,11 +18,27 @@ function buildFailures(root) {
     const groups = outcomes(shown);
     const hidden = failedRuns.length - shown.length;
     figure.showTitle(`${counted(shown.length, "run")} of ${wholeText(view.runs.length)} did not converge`);
-    figure.box.replaceChildren(tableFrame(table(["runs", "status", "reason", "which"],
-      groups.map(({ status, reason, list }) => [list.length, statusBadge(status), reason, element("span", {}, runLinks(list, 8))]), { class: "failures-table" }), "Failures"));
+    figure.showElements(
+      tableFrame(
+        table(
+          ["runs", "status", "reason", "which"],
+          groups.map(({ status, reason, list }) => [
+            list.length,
+            statusBadge(status),
+            reason,
+            element("span", {}, runLinks(list, 8)),
+          ]),
+          { class: "failures-table" },
+        ),
+        "Failures",
+      ),
+    );
     figure.showNote(hidden ? `Hidden by filters: ${wholeText(hidden)} more.` : "", commonWords(shown));
-    figure.showData(["run", "status", "reason", ...axes.map(({ column }) => column)],
-      () => groups.flatMap(({ list }) => list).map((run) => [run, runs.status[run], runs.reason[run], ...axes.map((_, axis) => valueOf(axis, run))]));
+    figure.showData(["run", "status", "reason", ...axes.map(({ column }) => column)], () =>
+      groups
+        .flatMap(({ list }) => list)
+        .map((run) => [run, runs.status[run], runs.reason[run], ...axes.map((_, axis) => valueOf(axis, run))]),
+    );
   };
 }
 
@@ -28,20 +47,45 @@ function commonWords(failed) {
   if (failed.length < 2) return "";
   const shared = range(axes.length).filter((axis) => {
     const first = runs.choice[axis][failed[0]];
-    return failed.every((run) => runs.choice[axis][run] === first) && view.runs.some((run) => runs.choice[axis][run] !== first);
+    return (
+      failed.every((run) => runs.choice[axis][run] === first) &&
+      view.runs.some((run) => runs.choice[axis][run] !== first)
+    );
   });
-  return shared.length ? `All of them have ${shared.map((axis) => `${axes[axis].name} ${alternativeOf(axis, failed[0])}`).join(", ")}.` : "";
+  return shared.length
+    ? `All of them have ${shared.map((axis) => `${axes[axis].name} ${alternativeOf(axis, failed[0])}`).join(", ")}.`
+    : "";
 }
 
 function statusBadge(status) {
-  return element("span", { class: "status" }, element("i", { class: "dot", style: `background: ${statusColour(status)}` }), status);
+  return element(
+    "span",
+    { class: "status" },
+    element("i", { class: "dot", style: `background: ${statusColour(status)}` }),
+    status,
+  );
 }
 
 /** How all runs ended, as bars. */
 function outcomeBars() {
   const groups = outcomes(view.runs);
   const most = Math.max(...groups.map(({ list }) => list.length), 1);
-  return element("div", { class: "outcomes" }, groups.slice(0, 12).map(({ status, reason, list }) => element("div", { class: "outcome" },
-    element("p", {}, element("b", {}, `${wholeText(list.length)} ${status}`), `: ${reason}`),
-    element("div", { "class": "track", "aria-hidden": "true" }, element("i", { style: `width: ${100 * list.length / most}%; background: ${statusColour(status)}` })))));
+  return element(
+    "div",
+    { class: "outcomes" },
+    groups
+      .slice(0, 12)
+      .map(({ status, reason, list }) =>
+        element(
+          "div",
+          { class: "outcome" },
+          element("p", {}, element("b", {}, `${wholeText(list.length)} ${status}`), `: ${reason}`),
+          element(
+            "div",
+            { class: "track", "aria-hidden": "true" },
+            element("i", { style: `width: ${(100 * list.length) / most}%; background: ${statusColour(status)}` }),
+          ),
+        ),
+      ),
+  );
 }

@@ -2,40 +2,49 @@
 
 const mostPoints = 4000;
 const mostLegendEntries = 24;
-const crowd = 16;  // from so many lines on, those that no headline speaks of are faint
+const longestName = 72; // in a legend, in characters
+const crowd = 16; // from so many lines on, those that no headline speaks of are faint
 
 // The formulations that the most important headline speaks of: they are drawn above the others.
 const recommended = new Set(report.headlines.find(({ kind }) => kind === "recommendation")?.lines ?? []);
+const isLineShown = (line) => lines[line].runs.some((run) => view.isShown[run]);
+const byRecommendation = (lineA, lineB) => recommended.has(lineB) - recommended.has(lineA);
 
 /** The runs shown as groups to be drawn: formulations, and last what belongs to none. */
 function shownGroups() {
-  const groups = lines.map((line, index) => ({ line: index, label: line.label, runs: line.runs.filter((run) => view.isShown[run]) }));
+  const groups = lines.map((line, index) => ({
+    line: index,
+    label: line.label,
+    runs: line.runs.filter((run) => view.isShown[run]),
+  }));
   const others = view.runs.filter((run) => lineOfRun[run] < 0);
   groups.push({ line: -1, label: lines.length ? "of no formulation" : "runs", runs: others });
   return groups.filter((group) => group.runs.length);
 }
 
-/** Every so-maniest group, or run where there is but one, so that a chart stays quick; with a note where any is left out. */
+/** Every so-maniest group, or run where groups are few, so that a chart stays quick; a note says so. */
 function thinned(groups) {
   const count = groups.reduce((sum, group) => sum + group.runs.length, 0);
   if (count <= mostPoints) return { groups, note: "" };
   const step = Math.ceil(count / mostPoints);
   if (groups.length >= 2 * step) {
     const kept = groups.filter((group, index) => index % step === 0 || recommended.has(group.line));
-    return { groups: kept, note: `Drawn are ${wholeText(kept.length)} of ${wholeText(groups.length)} formulations; filters bring out the others.` };
+    const share = `${wholeText(kept.length)} of ${counted(groups.length, "formulation")}`;
+    return { groups: kept, note: `Drawn are ${share}; filters bring out the others.` };
   }
   const kept = groups.map((group) => ({ ...group, runs: group.runs.filter((_, index) => index % step === 0) }));
   return { groups: kept, note: `Drawn is one in ${step} of ${counted(count, "run")}; filters bring out the others.` };
 }
 
 /**
- * Points of the runs shown. `xOf(run)`, `yOf(run)`: null where not known. What an axis cannot hold is kept at its rim: a
- * run that failed without a value at the upper, a 0 on a logarithmic axis (`log.y`) at the lower one.
+ * Points of the runs shown. `xOf(run)`, `yOf(run)`: null where not known. What an axis cannot hold is kept at its rim:
+ * a run that failed without a value at the upper, a 0 on a logarithmic axis (`log.y`) at the lower one.
  */
 function pointsOf(groups, xOf, yOf, log) {
   const missing = [];
   const place = (run) => {
-    const x = xOf(run), y = yOf(run);
+    const x = xOf(run);
+    const y = yOf(run);
     if (!isKnown(x) || (log.x && x <= 0)) return null;
     if (!isKnown(y)) return converged(run) ? null : { x, y: null, run, rim: "upper" };
     if (!log.y || y > 0) return { x, y, run };
@@ -72,23 +81,46 @@ function linearRims(values) {
 }
 
 function datasetsOf(series, connected) {
-  return series.flatMap((group) => {
-    const style = lineStyle(group.line);
-    const isEmphasized = recommended.has(group.line);
-    const isFaint = series.length > crowd && !isEmphasized;
-    const colour = isFaint && recommended.size ? `${style.colour}66` : style.colour;
-    const common = { borderColor: colour, line: group.line, order: isEmphasized ? 0 : 1 };
-    const radius = isFaint || group.points.length > 500 ? 2.5 : isEmphasized ? 6 : 4.5;
-    return [{
-      ...common, label: group.label, data: group.points.filter(({ run }) => converged(run)),
-      showLine: connected, borderDash: isEmphasized ? [] : style.dash, borderWidth: isEmphasized ? 4 : isFaint ? 1 : 2,
-      pointStyle: style.marker, backgroundColor: colour, pointBackgroundColor: colour, pointBorderColor: colour,
-      pointBorderWidth: ["star", "cross"].includes(style.marker) ? 2 : 0, radius, hoverRadius: radius + 3, hitRadius: 5,
-    }, {
-      ...common, label: `${group.label}: not converged`, data: group.points.filter(({ run }) => !converged(run)),
-      showLine: false, clip: false, pointStyle: "crossRot", borderWidth: 2, radius: radius + 1, hoverRadius: radius + 4, hitRadius: 5,
-    }];
-  }).filter((dataset) => dataset.data.length);
+  return series
+    .flatMap((group) => {
+      const style = lineStyle(group.line);
+      const isEmphasized = recommended.has(group.line);
+      const isFaint = series.length > crowd && !isEmphasized;
+      const colour = isFaint && recommended.size ? `${style.colour}66` : style.colour;
+      const common = { borderColor: colour, line: group.line, order: isEmphasized ? 0 : 1 };
+      const radius = isFaint || group.points.length > 500 ? 2.5 : isEmphasized ? 6 : 4.5;
+      return [
+        {
+          ...common,
+          label: group.label,
+          data: group.points.filter(({ run }) => converged(run)),
+          showLine: connected,
+          borderDash: isEmphasized ? [] : style.dash,
+          borderWidth: isEmphasized ? 4 : isFaint ? 1 : 2,
+          pointStyle: style.marker,
+          backgroundColor: colour,
+          pointBackgroundColor: colour,
+          pointBorderColor: colour,
+          pointBorderWidth: ["star", "cross"].includes(style.marker) ? 2 : 0,
+          radius,
+          hoverRadius: radius + 3,
+          hitRadius: 5,
+        },
+        {
+          ...common,
+          label: `${group.label}: not converged`,
+          data: group.points.filter(({ run }) => !converged(run)),
+          showLine: false,
+          clip: false,
+          pointStyle: "crossRot",
+          borderWidth: 2,
+          radius: radius + 1,
+          hoverRadius: radius + 4,
+          hitRadius: 5,
+        },
+      ];
+    })
+    .filter((dataset) => dataset.data.length);
 }
 
 /** Draws runs as points. `scales(series)` gives the axes once it is known what they must hold; `tip(run)` the words. */
@@ -102,21 +134,32 @@ function drawPoints(figure, { xOf, yOf, log, connected, scales, tip, plugins = [
     title: (items) => (items.length ? wrapped(items[0].dataset.label, 60) : ""),
     label: (item) => tip(item.raw.run),
   };
-  figure.showChart({ type: "scatter", data: { datasets: datasetsOf(series, connected) }, options, plugins: [selectionRing, ...plugins] });
+  figure.showChart({
+    type: "scatter",
+    data: { datasets: datasetsOf(series, connected) },
+    options,
+    plugins: [selectionRing, ...plugins],
+  });
   const atLower = points.filter(({ rim }) => rim === "lower").length;
   const atUpper = points.filter(({ rim }) => rim === "upper").length;
-  figure.showNote(note,
+  figure.showNote(
+    note,
     series.some(({ line }) => recommended.has(line)) ? "Thick, ★: recommended." : "",
     atLower ? `At the lower rim: ${counted(atLower, "point")} of exactly 0.` : "",
     points.some(({ run }) => !converged(run)) ? "Crosses: runs that did not converge." : "",
     atUpper ? `At the upper rim: ${counted(atUpper, "failure")} without a value.` : "",
-    missing.length ? `Without a point for want of a value: ${counted(missing.length, "run")} (${statusWords(missing)}).` : "");
+    missing.length
+      ? `Without a point for want of a value: ${counted(missing.length, "run")} (${statusWords(missing)}).`
+      : "",
+  );
   return series;
 }
 
 /** "5 converged, 2 stalled". */
 function statusWords(list) {
-  return [...countBy(list, (run) => runs.status[run])].map(([status, count]) => `${wholeText(count)} ${status}`).join(", ");
+  return [...countBy(list, (run) => runs.status[run])]
+    .map(([status, count]) => `${wholeText(count)} ${status}`)
+    .join(", ");
 }
 
 /** A text in lines of about that length, as canvases do not break any. */
@@ -130,17 +173,23 @@ function wrapped(text, length) {
 }
 
 /** What stands along a line, in the words of a tooltip. */
-const alongText = (run) => (report.along === null ? `run ${run}` : `${axes[report.along].name} = ${alternativeOf(report.along, run)}`);
+const alongText = (run) =>
+  report.along === null ? `run ${run}` : `${axes[report.along].name} = ${alternativeOf(report.along, run)}`;
 
 /** Formulations as buttons that show and hide them, everywhere. */
 function drawLegend(holder) {
   if (!lines.length) return;
-  const count = holder.dataset.all ? lines.length : Math.min(lines.length, mostLegendEntries);
-  const firstOnes = range(lines.length).sort((a, b) => recommended.has(b) - recommended.has(a));
-  const entries = firstOnes.slice(0, count).map(legendEntry);
-  if (count < lines.length) {
-    const showAll = () => { holder.dataset.all = "true"; drawLegend(holder); };
-    entries.push(button(`and ${wholeText(lines.length - count)} more`, showAll, { class: "link" }));
+  // What only the legend hides stays in it, to be shown again.
+  const listed = range(lines.length).filter((line) => isLineShown(line) || view.hiddenLines.has(line));
+  const count = holder.dataset.all ? listed.length : Math.min(listed.length, mostLegendEntries);
+  const ordered = listed.sort(byRecommendation);
+  const entries = ordered.slice(0, count).map(legendEntry);
+  if (count < listed.length) {
+    const showAll = () => {
+      holder.dataset.all = "true";
+      drawLegend(holder);
+    };
+    entries.push(button(`and ${wholeText(listed.length - count)} more`, showAll, { class: "link" }));
   }
   holder.replaceChildren(...entries);
 }
@@ -148,19 +197,33 @@ function drawLegend(holder) {
 function legendEntry(line) {
   const failures = lines[line].runs.filter((run) => !converged(run)).length;
   const entry = button("", () => toggle(view.hiddenLines, line), {
-    "class": "entry", "aria-pressed": String(!view.hiddenLines.has(line)), "title": `${lines[line].label}: show or hide`,
+    class: "entry",
+    "aria-pressed": String(!view.hiddenLines.has(line)),
+    title: `${lines[line].label}: show or hide`,
   });
-  entry.append(swatch(line), element("span", { class: "name" }, lines[line].label));
+  entry.append(swatch(line), element("span", { class: "name" }, shortened(lines[line].label, longestName)));
   if (recommended.has(line)) entry.append(element("span", { class: "badge", title: "recommended" }, "★"));
-  if (failures) entry.append(element("span", { class: "failures", title: "runs that did not converge" }, `✕ ${failures}`));
+  if (failures)
+    entry.append(element("span", { class: "failures", title: "runs that did not converge" }, `✕ ${failures}`));
   return entry;
 }
 
 /** The columns of runs drawn as points, for their data. */
 function pointData(series, columns) {
   const names = ["run", "formulation", "status", ...axes.map(({ column }) => column), ...columns.map(([name]) => name)];
-  return [names, () => series.flatMap((group) => group.points.map(({ run }) => [
-    run, group.label, runs.status[run], ...axes.map((_, axis) => valueOf(axis, run)), ...columns.map(([, of]) => of(run))]))];
+  return [
+    names,
+    () =>
+      series.flatMap((group) =>
+        group.points.map(({ run }) => [
+          run,
+          group.label,
+          runs.status[run],
+          ...axes.map((_, axis) => valueOf(axis, run)),
+          ...columns.map(([, of]) => of(run)),
+        ]),
+      ),
+  ];
 }
 
 /** What stands in a table for the axis: its number, or else its name. */

@@ -10,7 +10,11 @@ const range = (count) => Array.from({ length: count }, (_, index) => index);
 
 // Per run the formulation it belongs to; -1 where it belongs to none.
 const lineOfRun = new Int32Array(runCount).fill(-1);
-lines.forEach((line, index) => line.runs.forEach((run) => { lineOfRun[run] = index; }));
+lines.forEach((line, index) =>
+  line.runs.forEach((run) => {
+    lineOfRun[run] = index;
+  }),
+);
 
 const isNumeric = (axis) => Array.isArray(axes[axis].numbers) && axes[axis].numbers.length > 0;
 
@@ -56,7 +60,8 @@ const hasValues = (quantity) => quantities[quantity]?.values.some(isKnown) ?? fa
 
 /** A run in words by the axes given, all of them by default. */
 function describeRun(run, chosen = range(axes.length)) {
-  const parts = chosen.filter((axis) => runs.choice[axis][run] >= 0)
+  const parts = chosen
+    .filter((axis) => runs.choice[axis][run] >= 0)
     .map((axis) => `${axes[axis].name} ${alternativeOf(axis, run)}`);
   return parts.join(", ");
 }
@@ -64,10 +69,13 @@ function describeRun(run, chosen = range(axes.length)) {
 /** What a run can have cost, by name. */
 const costs = {
   "solve time": { title: "Solve time (s)", of: (run) => runs.solve_seconds[run] },
-  "set-up and solve time": { title: "Set-up and solve time (s)", of: (run) => sumOf(runs.setup_seconds[run], runs.solve_seconds[run]) },
-  "iterations": { title: "Iterations", of: (run) => runs.iterations[run] },
-  "factorizations": { title: "Factorizations", of: (run) => runs.factorizations[run] },
-  "unknowns": { title: "Unknowns", of: (run) => runs.unknowns[run] },
+  "set-up and solve time": {
+    title: "Set-up and solve time (s)",
+    of: (run) => sumOf(runs.setup_seconds[run], runs.solve_seconds[run]),
+  },
+  iterations: { title: "Iterations", of: (run) => runs.iterations[run] },
+  factorizations: { title: "Factorizations", of: (run) => runs.factorizations[run] },
+  unknowns: { title: "Unknowns", of: (run) => runs.unknowns[run] },
 };
 const sumOf = (a, b) => (isKnown(a) && isKnown(b) ? a + b : null);
 
@@ -96,12 +104,18 @@ function quantile(sorted, share) {
 }
 
 function median(values) {
-  return values.length ? quantile([...values].sort((a, b) => a - b), 0.5) : null;
+  return values.length
+    ? quantile(
+        [...values].sort((a, b) => a - b),
+        0.5,
+      )
+    : null;
 }
 
 /** [smallest, largest]; a spread of 10 000 arguments would be too many. */
 function extent(values) {
-  let low = Infinity, high = -Infinity;
+  let low = Infinity,
+    high = -Infinity;
   for (const value of values) {
     if (value < low) low = value;
     if (value > high) high = value;

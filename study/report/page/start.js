@@ -12,8 +12,10 @@ const someValue = range(quantities.length).some(hasValues);
 if (report.along !== null && someValue) addSection("convergence", "Convergence", buildConvergence);
 if (mappableAxes.length >= 2) addSection("heat-map", "Two axes at once", buildHeatMap);
 if (report.effects.length) addSection("effects", "Effects", buildEffects);
-if (report.distributions.length || (sampledAxes.length && someValue)) addSection("distribution", "Distribution", buildDistribution);
-if (report.sensitivities.length || report.inseparable.length) addSection("sensitivities", "Sensitivities", buildSensitivities);
+if (report.distributions.length || (sampledAxes.length && someValue))
+  addSection("distribution", "Distribution", buildDistribution);
+if (report.sensitivities.length || report.inseparable.length)
+  addSection("sensitivities", "Sensitivities", buildSensitivities);
 if (report.energies.some(({ values }) => values.some(isKnown))) addSection("energies", "Energy", buildEnergies);
 if (report.shapes.length) addSection("shapes", "Shapes", buildShapes);
 if (failedRuns.length) addSection("failures", "Failures", buildFailures);
@@ -27,5 +29,5 @@ schemeButton.addEventListener("click", () => {
 addEventListener("beforeprint", bowstringReport.drawAll);
 
 changed();
-bowstringReport.readyAfter = performance.now();  // ms since the page was asked for
+bowstringReport.readyAfter = performance.now(); // ms since the page was asked for
 document.documentElement.dataset.ready = "true";

@@ -27,7 +27,10 @@ function errorText(error) {
 
 /** 10⁻³, as an axis writes it. */
 const powerText = (exponent) => `10${raised(exponent)}`;
-const raised = (number) => String(number).replace("-", "⁻").replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
+const raised = (number) =>
+  String(number)
+    .replace("-", "⁻")
+    .replace(/\d/g, (digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit]);
 
 /** What cuts a long text without losing its end, where names differ most. */
 function shortened(text, length) {
@@ -36,7 +39,7 @@ function shortened(text, length) {
   return `${text.slice(0, start)}…${text.slice(text.length - (length - 1 - start))}`;
 }
 
-const cellText = (cell) => (typeof cell === "number" ? numberText(cell, 6) : cell ?? unknownText);
+const cellText = (cell) => (typeof cell === "number" ? numberText(cell, 6) : (cell ?? unknownText));
 
 /** RFC 4180; numbers with all digits, nothing where one is not known. */
 function csvText(columns, rows) {

@@ -2,18 +2,18 @@
 
 const view = {
   quantity: 0,
-  hidden: axes.map(() => new Set()),     // alternatives, per axis
-  between: axes.map(() => [null, null]),  // numbers, per axis of many
+  hidden: axes.map(() => new Set()), // alternatives, per axis
+  between: axes.map(() => [null, null]), // numbers, per axis of many
   hiddenStatuses: new Set(),
   hiddenLines: new Set(),
   selected: null,
-  runs: range(runCount),                   // what is left of them
+  runs: range(runCount), // what is left of them
   isShown: new Uint8Array(runCount).fill(1),
 };
 
 const sections = [];
-const watchers = [];        // what is always in sight, and so never waits
-const selectionMarks = [];  // what shows the selected run, but for the charts
+const watchers = []; // what is always in sight, and so never waits
+const selectionMarks = []; // what shows the selected run, but for the charts
 
 function passesAxis(axis, run) {
   const alternative = runs.choice[axis][run];
@@ -26,8 +26,11 @@ function passesAxis(axis, run) {
 }
 
 function passes(run) {
-  return !view.hiddenStatuses.has(runs.status[run]) && !view.hiddenLines.has(lineOfRun[run])
-    && axes.every((_, axis) => passesAxis(axis, run));
+  return (
+    !view.hiddenStatuses.has(runs.status[run]) &&
+    !view.hiddenLines.has(lineOfRun[run]) &&
+    axes.every((_, axis) => passesAxis(axis, run))
+  );
 }
 
 const axisIsFiltered = (axis) => view.hidden[axis].size > 0 || view.between[axis].some((bound) => bound !== null);
@@ -90,17 +93,24 @@ function drawSection(section) {
 }
 
 // A section far below the fold costs nothing until it is scrolled to.
-const nearness = new IntersectionObserver((entries) => {
-  for (const entry of entries) {
-    const section = sections.find(({ root }) => root === entry.target);
-    section.isNear = entry.isIntersecting;
-    if (section.isNear) drawSection(section);
-  }
-}, { rootMargin: "400px" });
+const nearness = new IntersectionObserver(
+  (entries) => {
+    for (const entry of entries) {
+      const section = sections.find(({ root }) => root === entry.target);
+      section.isNear = entry.isIntersecting;
+      if (section.isNear) drawSection(section);
+    }
+  },
+  { rootMargin: "400px" },
+);
 
 /** A section of the page; `build` gets its root and gives back what draws it, whenever the view changes. */
 function addSection(id, title, build) {
-  const root = element("section", { id, "aria-labelledby": `${id}-title` }, element("h2", { id: `${id}-title` }, title));
+  const root = element(
+    "section",
+    { id, "aria-labelledby": `${id}-title` },
+    element("h2", { id: `${id}-title` }, title),
+  );
   document.getElementById("sections").append(root);
   const section = { id, title, root, draw: build(root), isDrawn: false, isNear: false };
   sections.push(section);

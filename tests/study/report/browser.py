@@ -24,8 +24,6 @@ class Browser:
 
     def __enter__(self):
         self.folder = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        self.downloads = pathlib.Path(self.folder.name) / "downloads"
-        self.downloads.mkdir()
         self.driver = subprocess.Popen(["chromedriver", "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                                        text=True)
         try:
@@ -36,7 +34,6 @@ class Browser:
                 "goog:chromeOptions": {
                     "binary": shutil.which("chromium"),
                     "args": [*SWITCHES, f"--user-data-dir={self.folder.name}/profile"],
-                    "prefs": {"download.default_directory": str(self.downloads)},
                 },
                 "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
             }}})["sessionId"]
@@ -89,7 +86,8 @@ class Browser:
             look();"""})
 
     def resize(self, width, height):
-        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
+                      mobile=False)
 
     def prefer(self, scheme):
         self.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
@@ -100,7 +98,13 @@ class Browser:
     def requests(self):
         """Addresses that the page asked for since the last call."""
         messages = [json.loads(entry["message"])["message"] for entry in self.log("performance")]
-        return [message["params"]["request"]["url"] for message in messages if message["method"] == "Network.requestWillBeSent"]
+        return [message["params"]["request"]["url"] for message in messages
+                if message["method"] == "Network.requestWillBeSent"]
+
+    def click(self, x, y):
+        """A real click, in pixels of the window."""
+        for kind in ("mousePressed", "mouseReleased"):
+            self.devtools("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
     def screenshot(self, file, whole=False):
         picture = {"captureBeyondViewport": True} if whole else {}

@@ -12,6 +12,12 @@ import sys
 HOSTILE = 'wire </script><b>"&amp;'  # names are the user's
 
 
+# A run of which nothing is to be told.
+ORDINARY = {"hash": "", "second_order": "minimum", "unknowns": 100, "iterations": 12, "factorizations": 14, "epochs": 2,
+            "max_penetration_dense_mm": 1e-6, "min_stretch": 0.99, "setup_seconds": 0.002, "solve_seconds": 0.05}
+UNKNOWN = dict.fromkeys(ORDINARY)
+
+
 def axis(name, labels, numbers=None, unit="", spacing="listed"):
     column = name + ("_" + unit.replace(" ", "_").replace("^", "") if unit else "")
     return {"name": name, "unit": unit, "column": column, "paths": [f"scene.{name}"], "labels": labels,
@@ -27,9 +33,7 @@ def empty(name, title, axes):
         "study": {"name": name, "title": title, "file": f"{name}.toml", "version": "0.1.0", "repeats": 3,
                   "target_error": 0.01},
         "headlines": [], "axes": axes, "along": None, "line_axes": [], "quantities": [], "energies": [],
-        "runs": {key: [] for key in (
-            "hash", "status", "reason", "second_order", "unknowns", "iterations", "factorizations", "epochs",
-            "max_penetration_dense_mm", "min_stretch", "setup_seconds", "solve_seconds")} | {"choice": [[] for _ in axes]},
+        "runs": {key: [] for key in ("status", "reason", *ORDINARY)} | {"choice": [[] for _ in axes]},
         "lines": [], "effects": [], "sensitivities": [], "inseparable": [], "distributions": [], "shapes": [],
         "shapes_text": "",
     }
@@ -38,14 +42,12 @@ def empty(name, title, axes):
 def add_run(report, choice, status="converged", reason="", **values):
     """`values`: what differs from an ordinary run; None for what is not known."""
     runs = report["runs"]
-    ordinary = {"hash": hashlib.sha256(repr(choice).encode()).hexdigest(), "second_order": "minimum", "unknowns": 100,
-                "iterations": 12, "factorizations": 14, "epochs": 2, "max_penetration_dense_mm": 1e-6,
-                "min_stretch": 0.99, "setup_seconds": 0.002, "solve_seconds": 0.05}
     for alternatives, alternative in zip(runs["choice"], choice):
         alternatives.append(alternative)
     runs["status"].append(status)
     runs["reason"].append(reason)
-    for key, value in (ordinary | values).items():
+    name = hashlib.sha256(repr(choice).encode()).hexdigest()
+    for key, value in (ORDINARY | values | {"hash": name}).items():
         runs[key].append(value)
     return len(runs["status"]) - 1
 
@@ -57,6 +59,11 @@ def quantity(column, unit, values, references=None, reference_text=""):
                   for value, reference in zip(values, references)]
     return {"column": column, "unit": unit, "path": f"quantities.{column}", "reference_text": reference_text,
             "values": values, "references": references, "errors": errors}
+
+
+def fitted(verdict, order, spread, limit, text):
+    return {"verdict": verdict, "order": order, "order_low": order and order - spread,
+            "order_high": order and order + spread, "limit": limit, "text": text}
 
 
 def arch(points, height, dy=0.0):
@@ -92,7 +99,8 @@ def convergence():
         error = (0.2 * (20 / count) ** 0.3 + 0.05 * (-1) ** mesh, 0.09 * 20 / count, 0.06 * (20 / count) ** 2)[contact]
         status, reason = "converged", ""
         if contact == 0 and count == 640:
-            status, reason = "stalled", "stationarity 3.1e-4 N: expected at most 1e-06 N; the step got shorter than rounding"
+            status = "stalled"
+            reason = "stationarity 3.1e-4 N: expected at most 1e-06 N; the step got shorter than rounding"
         elif solver == 1 and count >= 320:
             status, reason = "failed", "active-set: the working set changed 500 times without an end"
         elif contact == 2 and count == 20:
@@ -113,11 +121,9 @@ def convergence():
                           {"term": "axial-tension", "values": load}]
     for contact, solver in itertools.product(range(3), range(2)):
         own = [run for run, choice in enumerate(rows) if choice[1:] == (contact, solver)]
-        verdict = ("does not settle", "converges", "converges")[contact]
-        order = (None, 1.0, 2.0)[contact]
-        fit = {"verdict": verdict, "order": order, "order_low": order and order - 0.04, "order_high": order and order + 0.07,
-               "limit": None if order is None else 11.8,
-               "text": "values go up and down by 5 % with the mesh" if order is None else f"order {order:g} over the last 5 meshes"}
+        fit = fitted("does not settle", None, 0, None, "values go up and down by 5 % with the mesh")
+        if contact > 0:
+            fit = fitted("converges", contact, 0.05, 11.8, f"order {contact} over the last 5 meshes")
         report["lines"].append({"label": f"contact = {contacts[contact]}, solver = {solvers[solver]}",
                                 "choice": [contact, solver], "runs": own, "fits": [fit, None]})
     report["headlines"] = [
@@ -126,14 +132,17 @@ def convergence():
          "detail": "It reaches the target at N = 80; node-wise-contact needs N = 320 and 5 times the time for it, "
                    "same-index-contact never gets there."},
         {"kind": "convergence", "text": "active-set above N = 160 is what keeps runs from converging",
-         "detail": "5 of 9 failures have solver = active-set and N ≥ 320; of interior-point only same-index-contact at N = 640 and segment-wise-contact at N = 20 fail."},
-        {"kind": "warning", "text": "same-index-contact does not settle", "detail": "Its values go up and down by 5 % with the mesh."},
+         "detail": "5 of 9 failures have solver = active-set and N ≥ 320; of interior-point only same-index-contact "
+                   "at N = 640 and segment-wise-contact at N = 20 fail."},
+        {"kind": "warning", "text": "same-index-contact does not settle",
+         "detail": "Its values go up and down by 5 % with the mesh."},
         {"kind": "failures", "text": "9 of 36 runs did not converge", "detail": ""},
-        {"kind": "effect", "text": "The solver changes nothing that converged", "detail": "At most 0.4 % of peak displacement."},
+        {"kind": "effect", "text": "The solver changes nothing that converged",
+         "detail": "At most 0.4 % of peak displacement."},
     ]
     report["effects"] = [
-        {"axis": 1, "from": 0, "to": 2, "quantity": 0, "pairs": 9, "mean": -1.9, "low": -2.6, "high": -1.2, "largest": -3.1,
-         "largest_run": 4, "relative": -0.16},
+        {"axis": 1, "from": 0, "to": 2, "quantity": 0, "pairs": 9, "mean": -1.9, "low": -2.6, "high": -1.2,
+         "largest": -3.1, "largest_run": 4, "relative": -0.16},
         {"axis": 2, "from": 0, "to": 1, "quantity": 0, "pairs": 12, "mean": 0.01, "low": -0.01, "high": 0.03,
          "largest": 0.05, "largest_run": 1, "relative": 0.0008}]
     report["shapes"] = [shape(rows.index((4, contact, 0)), report["lines"][2 * contact]["label"], height)
@@ -165,17 +174,19 @@ def sample(count=200):
     report["sensitivities"] = [{"quantity": 0, "at": "T = 10 N, EI = 630 N mm^2", "entries": [
         {"axis": 0, "derivative": -0.098, "elasticity": -0.11}, {"axis": 1, "derivative": 0.0021, "elasticity": 0.14}]}]
     report["inseparable"] = [{"axes": [0, 1], "cosine": -0.997,
-                              "text": "Along (1, 0.31) nothing that was looked at changes: fix one, or add a quantity."}]
+                              "text": "Along (1, 0.31) nothing that was looked at changes."}]
     report["headlines"] = [
         {"kind": "effect", "text": "Stiffness explains 86 % of what varies in peak displacement",
          "detail": "Tension explains 12 %; 90 % of the sample lies between 7.2 and 12.6 mm."},
-        {"kind": "convergence", "text": "Stiff wires under high tension stall", "detail": "EI > 2500 N mm^2 with T > 12 N."}]
+        {"kind": "convergence", "text": "Stiff wires under high tension stall",
+         "detail": "EI > 2500 N mm^2 with T > 12 N."}]
     return report
 
 
 def ablation():
     """Named alternatives without any number, and names that try to be markup."""
-    axes = [axis(HOSTILE, ["<i>none</i>", "bending only </script>", "bending and anchoring of the whole length, graded"]),
+    long_name = "bending and anchoring of the whole length, graded"
+    axes = [axis(HOSTILE, ["<i>none</i>", "bending only </script>", long_name]),
             axis("gap", ["squared", "distance", "smooth-distance"]), axis("ends", ["pinned", "clamped"])]
     report = empty("ablation", "What each term does " + HOSTILE, axes)
     rows = list(itertools.product(range(3), range(3), range(2)))
@@ -187,9 +198,10 @@ def ablation():
     report["effects"] = [
         {"axis": name, "from": 0, "to": to, "quantity": 0, "pairs": pairs, "mean": mean, "low": mean - 0.1,
          "high": mean + 0.12, "largest": mean * 1.3, "largest_run": to, "relative": mean / 11}
-        for name, to, pairs, mean in ((0, 2, 6, 3.0), (0, 1, 6, 1.5), (1, 2, 6, -0.4), (1, 1, 6, -0.2), (2, 1, 9, 0.05))]
+        for name, to, pairs, mean in
+        ((0, 2, 6, 3.0), (0, 1, 6, 1.5), (1, 2, 6, -0.4), (1, 1, 6, -0.2), (2, 1, 9, 0.05))]
     report["headlines"] = [{"kind": "effect", "text": f"{HOSTILE} changes the mean displacement most: +3 mm",
-                            "detail": "No other axis moves it by more than 0.4 mm. " + "All else is small beside it. " * 14},
+                            "detail": "No other axis moves it by more than 0.4 mm. " + "All else is small. " * 20},
                            {"kind": "convergence", "text": "Every run converged", "detail": ""}]
     report["energies"] = [{"term": "wire-bending", "values": [100 + 10 * sum(choice) for choice in rows]},
                           {"term": HOSTILE, "values": [-20.0 * choice[0] for choice in rows]}]
@@ -198,17 +210,16 @@ def ablation():
 
 def failures():
     """Nothing but failures."""
-    report = empty("failures", "Nothing converged", [numeric_axis("N", [20, 40, 80]), axis("solver", ["ipopt", "nlopt"])])
+    solvers = ["ipopt", "nlopt"]
+    report = empty("failures", "Nothing converged", [numeric_axis("N", [20, 40, 80]), axis("solver", solvers)])
     report["along"], report["line_axes"] = 0, [1]
     for choice in itertools.product(range(3), range(2)):
-        refused = choice[1] == 1
-        add_run(report, choice, "refused" if refused else "diverged",
-                "nlopt: found 2 equalities; expected none; take another solver" if refused else "the energy fell below −1e12 N mm",
-                second_order=None, unknowns=None, iterations=None, factorizations=None, epochs=None,
-                max_penetration_dense_mm=None, min_stretch=None, setup_seconds=None, solve_seconds=None)
+        status, reason = (("diverged", "the energy fell below −1e12 N mm"),
+                          ("refused", "nlopt: found 2 equalities; expected none; take another solver"))[choice[1]]
+        add_run(report, choice, status, reason, **UNKNOWN)
     report["quantities"] = [quantity("peak_displacement_mm", "mm", [None] * 6)]
-    report["lines"] = [{"label": f"solver = {name}", "choice": [index], "runs": [index, 2 + index, 4 + index], "fits": [None]}
-                       for index, name in enumerate(["ipopt", "nlopt"])]
+    report["lines"] = [{"label": f"solver = {name}", "choice": [index], "runs": [index, 2 + index, 4 + index],
+                        "fits": [None]} for index, name in enumerate(solvers)]
     report["headlines"] = [{"kind": "convergence", "text": "No run converged",
                             "detail": "nlopt was refused for its equalities, ipopt diverged at every mesh."}]
     return report
@@ -229,11 +240,13 @@ def large():
         mesh, kinematics, contact, load = choice
         fails = dice.random() < 0.03
         error = 0.3 * (1 + 0.2 * load) * (10 / meshes[mesh]) ** (1 + 0.25 * kinematics) * dice.uniform(0.8, 1.2)
-        add_run(report, choice, "stalled" if fails else "converged", f"stopped after {500 + contact} iterations" if fails else "",
-                solve_seconds=1e-5 * meshes[mesh] * (1 + kinematics) * dice.uniform(0.9, 1.2), unknowns=3 * meshes[mesh])
+        status, reason = ("stalled", f"stopped after {500 + contact} iterations") if fails else ("converged", "")
+        add_run(report, choice, status, reason, unknowns=3 * meshes[mesh],
+                solve_seconds=1e-5 * meshes[mesh] * (1 + kinematics) * dice.uniform(0.9, 1.2))
         peak.append(None if fails else 10 * (1 + error))
         force.append(None if fails else 2 - error)
-    report["quantities"] = [quantity("peak_displacement_mm", "mm", peak, [10.0] * len(rows), "the finest run of each load"),
+    reference = "the finest run of each load"
+    report["quantities"] = [quantity("peak_displacement_mm", "mm", peak, [10.0] * len(rows), reference),
                             quantity("contact_force_N", "N", force)]
     report["energies"] = [{"term": term, "values": [None if value is None else factor * value for value in peak]}
                           for term, factor in (("wire-bending", 30), ("vessel-strain", 12), ("axial-tension", -9))]
@@ -243,8 +256,7 @@ def large():
     labels = [one["labels"] for one in report["axes"]]
     for (kinematics, contact, load), own in groups.items():
         order = 1 + 0.25 * kinematics
-        fit = {"verdict": "converges", "order": order, "order_low": order - 0.1, "order_high": order + 0.1, "limit": 10.0,
-               "text": f"order {order:g}"}
+        fit = fitted("converges", order, 0.1, 10.0, f"order {order:g}")
         report["lines"].append({"label": f"{labels[1][kinematics]}, {labels[2][contact]}, {labels[3][load]}",
                                 "choice": [kinematics, contact, load], "runs": own, "fits": [fit, None]})
     report["headlines"] = [
