@@ -1,7 +1,7 @@
 """Runs what the documentation tells a reader to run.
 
 Every ```sh block of README.md and docs/*.md is executed with this build's `bowstring`, in a folder that holds copies of
-scenes/ and subprojects/; every ```toml block that is a composition is explained; the ```cpp block is compiled against an
+scenes/, studies/ and subprojects/; every ```toml block that is a composition is explained; the ```cpp block is compiled against an
 installed prefix; docs/parameters.md must be what the plugins declare. A block's first lines may say: '# exit N',
 '# file: NAME', '# needs …'. Prints 'N passed, N failed'."""
 
@@ -21,7 +21,8 @@ class Documents:
         self.bowstring, self.source, self.build = pathlib.Path(bowstring).resolve(), pathlib.Path(source).resolve(), build
         self.folder = pathlib.Path(folder)
         self.passed = self.failed = 0
-        shutil.copytree(self.source / "scenes", self.folder / "scenes")
+        for name in ("scenes", "studies"):
+            shutil.copytree(self.source / name, self.folder / name)
         shutil.copytree(self.source / "subprojects", self.folder / "subprojects", ignore=shutil.ignore_patterns("build*"))
         binaries = self.folder / "bin"
         binaries.mkdir()
@@ -81,7 +82,8 @@ class Documents:
             elif kind == "toml" and "schema = 1" in text:
                 name = marks.get("file:", "documented.toml")
                 (self.folder / name).write_text(text)
-                self.run(f"bowstring explain {name}")
+                if "[axes]" not in text:  # a study is not explained, but run by the block that follows it
+                    self.run(f"bowstring explain {name}")
 
     def parameters(self):
         made = self.run(f"{sys.executable} {self.source}/docs/make_parameters.py {self.bowstring}")
