@@ -242,7 +242,7 @@ std::optional<Plan> make_plan(StudyFile study, Registry& registry, Refusal& refu
     if (!unit.runs.empty()) plan.units.push_back(std::move(unit));
   }
   Judge(plan, readings).judge(refusal);
-  check_reference(plan, refusal);
+  if (!refusal.any()) check_reference(plan, refusal);
   if (refusal.any()) return std::nullopt;
   return plan;
 }
