@@ -83,7 +83,7 @@ def test_killed_at_random_moments(command):
     counts = []
     for _ in range(KILLS):
         process = command.start(study, out, "--jobs", "2", "--keep", "summary")
-        threshold = (counts[-1] if counts else 0) + chance.randrange(1, 2 * RUNS // KILLS // 2)
+        threshold = (counts[-1] if counts else 0) + chance.randrange(1, RUNS // KILLS)
         wait_for_records(process, out, threshold)
         process.kill()
         process.communicate()
