@@ -7,6 +7,7 @@
 
 #include "core/composition/nearest.hpp"
 #include "study/analysis/causes.hpp"
+#include "study/analysis/statistics.hpp"
 #include "study/analysis/words.hpp"
 
 namespace bowstring::study {
@@ -66,12 +67,41 @@ std::string order_range(const std::vector<const Line*>& lines) {
 
 std::string in_brackets(const std::string& text) { return text.empty() ? "" : " (" + text + ")"; }
 
+std::string beside_words(const Tally& lines) {
+  const std::size_t count = lines.beside.size();
+  if (count == 0) return "";
+  return count == lines.settling.size() ? ", beside the reference"
+                                        : ", " + std::to_string(count) + " of them beside the reference";
+}
+
+/// How far, and with what.
+std::string beside_detail(const StudyData& data, const Analysis& analysis, const Tally& lines) {
+  if (lines.beside.empty()) return "";
+  double least = std::numeric_limits<double>::infinity(), most = 0.0;
+  std::vector<Case> cases;
+  for (const Line* line : lines.settling) {
+    const double beside = line->fits[0]->beside;
+    cases.push_back({data.runs[at(line->runs[0])].choice, std::isfinite(beside)});
+    if (!std::isfinite(beside)) continue;
+    least = std::min(least, beside);
+    most = std::max(most, beside);
+  }
+  const Cause cause = find_cause(cases, analysis.lines.axes);
+  const std::string those =
+      cause.found() ? ": " + of_all(cause.hits_with, cause.with) + " with " + conditions_text(data, cause.conditions)
+                    : "";
+  return " Beside the reference, by " + percent_range(least, most) + ", settle " +
+         of_all(static_cast<int>(lines.beside.size()), static_cast<int>(lines.settling.size())) + those + ".";
+}
+
 std::string split_words(const StudyData& data, const Tally& lines, const Cause& cause) {
-  const std::string what = data.quantities[0].column + " from converging is " + conditions_text(data, cause.conditions);
   const int settle_with = cause.with - cause.hits_with, settle_without = cause.without - cause.hits_without;
-  return "What keeps " + what + ": " + of_all(settle_with, cause.with) + (cause.with == 1 ? " line" : " lines") +
-         " with it " + (cause.with == 1 ? "settles" : "settle") + ", " + of_all(settle_without, cause.without) +
-         " without" + in_brackets(order_range(lines.settling));
+  std::string out = "What keeps " + data.quantities[0].column + " from converging is " +
+                    conditions_text(data, cause.conditions) + ": " + of_all(settle_with, cause.with) +
+                    (cause.with == 1 ? " line with it settles, " : " lines with it settle, ") +
+                    of_all(settle_without, cause.without) + " without" + in_brackets(order_range(lines.settling));
+  add_clause(out, beside_words(lines), headline_length);
+  return out;
 }
 
 Cause cause_of_moving(const StudyData& data, const Analysis& analysis, const Tally& lines) {
@@ -90,10 +120,8 @@ std::string convergence_words(const StudyData& data, const Analysis& analysis, c
   const std::string& first = (settling > 0 ? lines.settling : lines.moving)[0]->fits[0]->text;
   if (judged == 1) return name + (settling > 0 ? " converges: " : " does not settle: it ") + first;
   if (settling == judged) {
-    std::string out =
-        name + " converges in all " + std::to_string(judged) + " lines" + in_brackets(order_range(lines.settling));
-    if (!lines.beside.empty()) out += ", in " + std::to_string(lines.beside.size()) + " of them beside the reference";
-    return out;
+    return name + " converges in all " + std::to_string(judged) + " lines" + in_brackets(order_range(lines.settling)) +
+           beside_words(lines);
   }
   if (settling == 0) return name + " settles in none of " + std::to_string(judged) + " lines; the first one " + first;
   const Cause cause = cause_of_moving(data, analysis, lines);
@@ -125,15 +153,15 @@ std::string convergence_detail(const StudyData& data, const Analysis& analysis, 
   for (const std::vector<const Line*>* group : {&lines.moving, &lines.settling, &lines.unjudged}) {
     add_behaviours(*group, parts);
   }
-  std::string out = listed(parts);
+  std::string out = listed(parts) + beside_detail(data, analysis, lines);
   std::vector<std::string> others;
   for (std::size_t q = 1; q < data.quantities.size(); ++q) {
     const Tally own = tally(analysis, q);
     if (own.judged() == 0) continue;
     others.push_back(data.quantities[q].column + " settles in " +
-                     of_all(static_cast<int>(own.settling.size()), own.judged()));
+                     of_all(static_cast<int>(own.settling.size()), own.judged()) + " lines");
   }
-  if (!others.empty()) out += " Of the others, " + listed(others);
+  if (!others.empty()) out += " Other quantities: " + listed(others);
   return out;
 }
 
@@ -218,6 +246,35 @@ void add_distribution(const StudyData& data, const Analysis& analysis, std::vect
   if (!all[0].note.empty()) parts.push_back(all[0].note);
   for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(distribution_words(data, all[k]));
   out.push_back({HeadlineKind::effect, distribution_words(data, all[0]), listed(parts)});
+}
+
+/// Of a grid whose axes have too many numbers for effects: which of them the first quantity follows most.
+void add_sensitivity(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
+  std::map<int, std::vector<double>> sizes;  // axis → |elasticity| at its places
+  for (const Sensitivity& place : analysis.sensitivities) {
+    for (const SensitivityEntry& entry : place.entries) {
+      if (place.quantity == 0 && std::isfinite(entry.elasticity))
+        sizes[entry.axis].push_back(std::fabs(entry.elasticity));
+    }
+  }
+  if (sizes.empty()) return;
+  std::vector<std::pair<double, int>> medians;
+  for (auto& [axis, values] : sizes) {
+    std::sort(values.begin(), values.end());
+    medians.emplace_back(quantile(values, 0.5), axis);
+  }
+  std::stable_sort(medians.begin(), medians.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  const auto name = [&](int axis) { return data.axes[at(axis)].name; };
+  std::string text = "1 % more of " + name(medians[0].second) + " changes " + data.quantities[0].column + " by " +
+                     percent(0.01 * medians[0].first);
+  if (medians.size() > 1) text += ", of " + name(medians[1].second) + " by " + percent(0.01 * medians[1].first);
+  std::vector<std::string> ranges;
+  for (const auto& [median, axis] : medians) {
+    const std::vector<double>& values = sizes[axis];
+    ranges.push_back(name(axis) + " " + percent_range(0.01 * values.front(), 0.01 * values.back()) + " at " +
+                     counted(static_cast<int>(values.size()), "place"));
+  }
+  out.push_back({HeadlineKind::effect, text, "Medians of the size over the places of the grid; " + listed(ranges)});
 }
 
 void add_inseparable(const Analysis& analysis, std::vector<Headline>& out) {
@@ -305,6 +362,9 @@ std::vector<Headline> write_headlines(const StudyData& data, const Analysis& ana
   add_convergence(data, analysis, out);
   add_effect(data, analysis, out);
   add_distribution(data, analysis, out);
+  const bool has_effect =
+      std::any_of(out.begin(), out.end(), [](const Headline& h) { return h.kind == HeadlineKind::effect; });
+  if (!has_effect) add_sensitivity(data, analysis, out);
   add_inseparable(analysis, out);
   add_invalid(data, out);
   add_failures(data, out);

@@ -15,7 +15,7 @@ namespace bowstring::study {
 
 namespace {
 
-constexpr double noise_of_time = 1.2;
+constexpr double noise_of_time = 1.2;  // a ratio below it says nothing
 constexpr std::size_t few_numbers = 6;
 constexpr std::size_t most_listed = 8;
 
@@ -74,7 +74,7 @@ class Finder {
       const RunData& record = data_.runs[at(run)];
       const int mesh = data_.along < 0 ? -1 : record.choice[at(data_.along)];
       if (data_.along >= 0 && mesh < 0) continue;
-      if (!std::isfinite(data_.quantities[0].reference[at(run)])) continue;
+      if (!std::isfinite(reference_of(data_, 0, run))) continue;
       std::vector<int> choice;
       for (int axis : out_.axes) choice.push_back(record.choice[at(axis)]);
       std::vector<Point>& points = formulations_[choice];
@@ -114,7 +114,7 @@ class Finder {
     bool stays = true;
     for (const Point& point : points) {  // the finest first
       stays = stays && point.error <= data_.target_error;
-      if (stays && (fastest == nullptr || point.seconds < fastest->seconds)) fastest = &point;
+      if (stays && (fastest == nullptr || point.seconds <= fastest->seconds)) fastest = &point;
       if (best == nullptr || point.error < best->error) best = &point;
     }
     if (best == nullptr) return out;
@@ -151,17 +151,19 @@ class Finder {
 
   std::string choice_words() {
     const std::vector<Candidate>& all = out_.candidates;
-    const bool has_next = all.size() > 1 && all[1].reaches;
-    const bool even = has_next && all[1].seconds <= noise_of_time * all[0].seconds;
+    const auto slower = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
+      return !c.reaches || c.seconds > noise_of_time * all[0].seconds;
+    });
+    const auto even = slower - all.begin();
     std::string out = "Use " + place(all[0]);
-    if (even) {
+    if (even == 2) {
       out += " or " + place(all[1]) + ": " + cost(all[0]) + " and " + cost(all[1]) + ", as fast as each other";
     } else {
       out += ": " + cost(all[0]);
     }
-    const std::size_t next = even ? 2 : 1;
-    if (next < all.size() && all[next].reaches) {
-      add_clause(out, ", " + times(all[next].seconds / all[0].seconds) + " faster than " + compared(all[next]),
+    if (even > 2) out += "; " + std::to_string(even - 1) + " others are as fast";
+    if (slower != all.end() && slower->reaches) {
+      add_clause(out, ", " + times(slower->seconds / all[0].seconds) + " faster than " + compared(*slower),
                  headline_length);
     }
     const std::string others = losers_words();

@@ -55,6 +55,16 @@ TEST_CASE("within noise both are named") {
         "Use node-wise at N = 40 or segment-wise at N = 40: 0.4 % in 2 s and 0.5 % in 2.3 s, as fast as each other");
 }
 
+TEST_CASE("more than two that are as fast are counted, and of equal times the coarser mesh is taken") {
+  StudyData data = study_of({words_axis("contact", {"a", "b", "c", "d"}), number_axis("N", {20, 40})}, {"q_mm"});
+  data.along = 1;
+  add_product(data);
+  data.quantities[0].value.assign(8, 1.001);
+  refer(data, 0, 1.0);
+  for (int run : {6, 7}) data.runs[static_cast<std::size_t>(run)].solve_seconds = 5.0;
+  CHECK(recommend(data).text == "Use a at N = 20: 0.1 % in 1 s; 2 others are as fast, 5 times faster than d");
+}
+
 TEST_CASE("a finer mesh that is faster is the one to use") {
   CHECK(recommend(two({0.005, 0.004, 0.001, 0.1, 0.1, 0.1}, {9, 2, 4, 1, 2, 5})).candidates[0].mesh == 1);
 }
