@@ -217,7 +217,8 @@ class Judge {
       log_x.push_back(std::log(x_[i]));
       log_f.push_back(std::log(std::fabs(f_[i])));
     }
-    return std::fabs(std::expm1(regress({log_x}, log_f).coefficient.at(0) * std::log(2.0)));
+    const Regression line = regress({log_x}, log_f);
+    return line.coefficient.empty() ? 0.0 : std::fabs(std::expm1(line.coefficient[0] * std::log(2.0)));
   }
 
   double scatter() const {

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double noise_of_time = 1.2;  // a ratio below it says nothing
 constexpr std::size_t few_numbers = 6;
-constexpr std::size_t most_listed = 8;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -256,18 +255,12 @@ class Finder {
 
   std::string detail() const {
     std::vector<std::string> parts;
-    for (const Candidate& c : out_.candidates) {
-      if (parts.size() < most_listed) parts.push_back(candidate_words(c));
-    }
+    for (const Candidate& c : out_.candidates) parts.push_back(candidate_words(c));
     std::string out = left_out_ + "To bring " + data_.quantities[0].column + " within " + target() + " of " +
-                      data_.quantities[0].reference_text +
-                      ", and keep it there on finer meshes: " + joined(parts, "; ");
-    if (parts.size() < out_.candidates.size()) {
-      out += "; and " + std::to_string(out_.candidates.size() - parts.size()) + " more";
-    }
+                      data_.quantities[0].reference_text + ", and keep it there on finer meshes: " + listed(parts);
     const std::size_t cases = out_.candidates[0].runs.size();
-    if (cases > 1) out += ". Errors are the largest, times the mean of " + std::to_string(cases) + " cases";
-    return out + ".";
+    if (cases > 1) out += " Errors are the largest, times the mean of " + std::to_string(cases) + " cases.";
+    return out;
   }
 
   const StudyData& data_;

@@ -1,11 +1,16 @@
 #include "study/analysis/words.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "core/composition/nearest.hpp"
 
 namespace bowstring::study {
 
 namespace {
+
+constexpr std::size_t most_listed = 8;
 
 std::string formatted(const char* format, int digits, double value) {
   char text[64];
@@ -39,6 +44,16 @@ std::string counted(int count, const std::string& singular) {
 }
 
 std::string range_text(const std::string& low, const std::string& high) { return low == high ? low : low + "…" + high; }
+
+std::string of_all(int count, int all) { return std::to_string(count) + " of " + std::to_string(all); }
+
+std::string listed(const std::vector<std::string>& parts) {
+  if (parts.empty()) return "";
+  const auto shown = std::min(parts.size(), most_listed);
+  std::string out = joined({parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(shown)}, "; ");
+  if (shown < parts.size()) out += "; and " + std::to_string(parts.size() - shown) + " more";
+  return out + ".";
+}
 
 std::string alternatives_text(const std::vector<std::string>& names) {
   std::string out;
