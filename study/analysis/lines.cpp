@@ -36,7 +36,9 @@ Sequence sequence_of(const StudyData& data, const Line& line, int quantity, cons
   Sequence out;
   for (int run : line.runs) {
     const int choice = data.runs[at(run)].choice[at(data.along)];
-    if (choice < 0 || (!out.resolution.empty() && out.resolution.back() == resolution[at(choice)])) continue;
+    if (choice < 0) continue;
+    const bool refines = out.resolution.empty() || resolution[at(choice)] > out.resolution.back();
+    if (!refines) continue;  // two alternatives of one size
     const double value = counted_value(data, quantity, run);
     if (!std::isfinite(value)) {
       ++out.failures;

@@ -86,8 +86,7 @@ class Finder {
   void measure(Point& point) const {
     std::vector<double> seconds;
     for (int run : point.runs) {
-      const bool counts =
-          std::isfinite(counted_value(data_, 0, run)) && std::isfinite(data_.runs[at(run)].solve_seconds);
+      const bool counts = std::isfinite(counted_value(data_, 0, run)) && data_.runs[at(run)].solve_seconds > 0.0;
       point.counts = point.counts && counts;
       if (!counts) continue;
       point.error = std::max(point.error, relative_error(data_, 0, run));
@@ -180,12 +179,15 @@ class Finder {
            place(best) + ", with " + cost(best);
   }
 
+  /// Those with a point, or else all.
   std::vector<const Candidate*> losers() const {
-    std::vector<const Candidate*> out;
+    std::vector<const Candidate*> all, measured;
     for (const Candidate& c : out_.candidates) {
-      if (!c.reaches) out.push_back(&c);
+      if (c.reaches) continue;
+      all.push_back(&c);
+      if (c.points > 0) measured.push_back(&c);
     }
-    return out;
+    return measured.empty() ? all : measured;
   }
 
   /// What tells a candidate from the first: "with segment-wise", or its label where they differ in more than one axis.
@@ -224,6 +226,10 @@ class Finder {
     return count == 1 ? losers().front()->label : std::to_string(count) + " others";
   }
 
+  std::string nowhere() const {
+    return data_.along < 0 ? " not converge in every case" : " no mesh on which all runs converge";
+  }
+
   std::string losers_words() const {
     const std::vector<const Candidate*> all = losers();
     if (all.empty()) return "";
@@ -233,7 +239,7 @@ class Finder {
     }
     bool several = false;
     const std::string name = losers_name(all, several);
-    if (!std::isfinite(least)) return name + (several ? " have" : " has") + " no mesh on which all runs converge";
+    if (!std::isfinite(least)) return name + (data_.along < 0 ? " did" : several ? " have" : " has") + nowhere();
     if (least <= data_.target_error) return name + (several ? " do" : " does") + " not stay within " + target();
     return name + " never " + (several ? "get" : "gets") + " below " + percent(least);
   }
@@ -241,7 +247,7 @@ class Finder {
   std::string candidate_words(const Candidate& c) const {
     std::string out = c.label.empty() ? "" : c.label + ": ";
     if (c.points == 0) {
-      out += "no mesh on which all runs converge";
+      out += (data_.along < 0 ? "did" : "has") + nowhere();
     } else if (c.reaches) {
       out += (c.mesh < 0 ? "" : mesh_text(c) + ", ") + cost(c);
     } else {
@@ -257,7 +263,8 @@ class Finder {
     std::vector<std::string> parts;
     for (const Candidate& c : out_.candidates) parts.push_back(candidate_words(c));
     std::string out = left_out_ + "To bring " + data_.quantities[0].column + " within " + target() + " of " +
-                      data_.quantities[0].reference_text + ", and keep it there on finer meshes: " + listed(parts);
+                      data_.quantities[0].reference_text +
+                      (data_.along < 0 ? ": " : ", and keep it there on finer meshes: ") + listed(parts);
     const std::size_t cases = out_.candidates[0].runs.size();
     if (cases > 1) out += " Errors are the largest, times the mean of " + std::to_string(cases) + " cases.";
     return out;

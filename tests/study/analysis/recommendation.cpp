@@ -104,6 +104,20 @@ TEST_CASE("other numbers are cases: the largest error counts") {
   CHECK(out.detail.find("the mean of 2 cases.") != std::string::npos);
 }
 
+TEST_CASE("without a mesh every formulation has one point") {
+  StudyData data = study_of({words_axis("contact", {"a", "b", "c"})}, {"q_mm"});
+  add_product(data);
+  data.quantities[0].value = {1.001, 1.1, 1.0};
+  refer(data, 0, 1.0);
+  fail(data, 2);
+  const Recommendation out = recommend(data);
+  CHECK(out.text == "Use a: 0.1 % in 1 s; b never gets below 10 %");
+  CHECK(out.detail ==
+        "To bring q_mm within 1 % of the known answer: a: 0.1 % in 1 s; b: never below 10 %; c: did not converge in "
+        "every "
+        "case (1 of 1 run failed).");
+}
+
 TEST_CASE("a study of one formulation") {
   StudyData data = study_of({number_axis("N", {20, 40})}, {"q_mm"});
   data.along = 0;
