@@ -32,8 +32,7 @@ struct Sequence {
 };
 
 /// Judges a sequence by its own differences first: d_i = f(x_{i+1}) − f(x_i) = C (x_{i+1}^−p − x_i^−p), so that
-/// ln |d_i| is ln |C p| and a known function of p; p by least squares over the differences, its interval by Student's
-/// t.
+/// ln |d_i| is ln |C p| and a known function of p. That gives p by least squares, and its interval by Student's t.
 ///
 /// *exact*: all values are equal to 1e-9 of the largest, and equal the reference where there is one.
 /// *too few*: fewer than three values.

@@ -169,7 +169,7 @@ class Finder {
     return out;
   }
 
-  static std::string times(double ratio) { return figure(ratio, ratio < 99.5 ? 2 : 3) + " times"; }
+  static std::string times(double ratio) { return figure(ratio, 2) + " times"; }
 
   std::string nothing_words() const {
     const Candidate& best = out_.candidates[0];

@@ -5,7 +5,7 @@
 
 namespace bowstring::study {
 
-/// "9.75", "0.0031", "1.2e-07": so many significant digits.
+/// "9.75", "0.0031", "1.2e-07", "1234": so many significant digits, and all before the point.
 std::string figure(double value, int digits = 3);
 /// "12 %", "0.31 %" of a share.
 std::string percent(double share);
