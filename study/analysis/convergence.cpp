@@ -14,13 +14,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = 1e-12, equal_values = 1e-9;  // of the largest value
 constexpr double noise_of_difference = 1e-3, noise_of_value = 1e-5;
-constexpr double least_order = 0.5, least_last_order = 0.25;
+constexpr double least_order = 0.5, least_low = 0.25;
 constexpr double above_offset = 10.0;  // times the distance of limit and reference: errors that tell an order
-
-/// |f(a) − f(b)| at two resolutions; b infinite for an error.
-struct Difference {
-  double a, b, size;
-};
 
 struct Order {
   double value = Fit::unknown, low = Fit::unknown, high = Fit::unknown;
@@ -31,7 +26,7 @@ Order fit_order(const std::vector<Difference>& differences) {
   const std::size_t count = differences.size();
   const auto shape = [&](double p) {
     std::vector<double> out;
-    for (const Difference& d : differences) out.push_back(difference_shape(d.a, d.b, p));
+    for (const Difference& d : differences) out.push_back(difference_shape(d, p));
     return out;
   };
   Order out;
@@ -124,15 +119,13 @@ class Judge {
   }
 
   static bool settles(const Order& own, const std::vector<Difference>& differences) {
-    double last = 0.0, slowest = infinity;
+    double slowest = infinity;
     for (std::size_t i = 1; i < differences.size(); ++i) {
-      const Difference &coarse = differences[i - 1], &fine = differences[i];
-      const double resolutions[3] = {coarse.a, fine.a, fine.b};
-      last = coarse.b == fine.a ? order_of_three(resolutions, coarse.size, fine.size)
-                                : std::log(coarse.size / fine.size) / std::log(fine.a / coarse.a);
-      slowest = std::min(slowest, last);
+      slowest = std::min(slowest, order_of_two(differences[i - 1], differences[i]));
     }
-    return own.value > least_order && (own.low > least_order || slowest > least_order) && last > least_last_order;
+    const std::size_t last = differences.size() - 1;
+    const double last_order = order_of_two(differences[last < 2 ? 0 : last - 2], differences[last]);
+    return own.value > least_order && (own.low > least_low || slowest > least_order) && last_order > least_low;
   }
 
   void take(const Order& order) {
@@ -224,7 +217,8 @@ class Judge {
       log_x.push_back(std::log(x_[i]));
       log_f.push_back(std::log(std::fabs(f_[i])));
     }
-    return std::fabs(std::expm1(regress({log_x}, log_f).coefficient.at(0) * std::log(2.0)));
+    const Regression line = regress({log_x}, log_f);
+    return line.coefficient.empty() ? 0.0 : std::fabs(std::expm1(line.coefficient[0] * std::log(2.0)));
   }
 
   double scatter() const {

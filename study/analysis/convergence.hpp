@@ -32,13 +32,12 @@ struct Sequence {
 };
 
 /// Judges a sequence by its own differences first: d_i = f(x_{i+1}) − f(x_i) = C (x_{i+1}^−p − x_i^−p), so that
-/// ln |d_i| is ln |C p| and a known function of p; p by least squares over the differences, its interval by Student's
-/// t.
+/// ln |d_i| is ln |C p| and a known function of p. That gives p by least squares, and its interval by Student's t.
 ///
 /// *exact*: all values are equal to 1e-9 of the largest, and equal the reference where there is one.
 /// *too few*: fewer than three values.
-/// *converges*: p > 0.5; the interval's lower end is above 0.5 or each difference falls with order above 0.5; and the
-/// finest three values have order above 0.25. Otherwise it *does not settle*.
+/// *converges*: p > 0.5; the interval's lower end is above 0.25 or each difference falls with order above 0.5; and the
+/// last three differences fall with order above 0.25. Otherwise it *does not settle*.
 ///
 /// Left out are differences at the rounding level: those at the fine end within 1e-12 of the largest value; and where
 /// all from some point on are below 1e-3 of the largest difference and 1e-5 of the largest value, those from the first

@@ -7,6 +7,8 @@
 
 #include "core/composition/nearest.hpp"
 #include "study/analysis/causes.hpp"
+#include "study/analysis/convergence_headline.hpp"
+#include "study/analysis/statistics.hpp"
 #include "study/analysis/words.hpp"
 
 namespace bowstring::study {
@@ -14,135 +16,12 @@ namespace bowstring::study {
 namespace {
 
 constexpr double no_change = 1e-6;  // of a quantity's size: what solves to their tolerance differ by
-constexpr std::size_t most_headlines = 5, most_listed = 8;
+constexpr std::size_t most_headlines = 5;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// "a; b; and 3 more."
-std::string listed(const std::vector<std::string>& parts) {
-  if (parts.empty()) return "";
-  std::vector<std::string> shown(parts.begin(), parts.begin() + static_cast<long>(std::min(parts.size(), most_listed)));
-  if (shown.size() < parts.size()) shown.push_back("and " + std::to_string(parts.size() - shown.size()) + " more");
-  return joined(shown, "; ") + ".";
-}
-
-std::string of_all(int count, int all) { return std::to_string(count) + " of " + std::to_string(all); }
-
 std::string with_unit(const std::string& number, const QuantityData& quantity) {
   return quantity.unit.empty() ? number : number + " " + quantity.unit;
-}
-
-/// Lines by how a quantity behaves along them.
-struct Tally {
-  std::vector<const Line*> settling, moving, unjudged, beside;
-  int judged() const { return static_cast<int>(settling.size() + moving.size()); }
-};
-
-Tally tally(const Analysis& analysis, std::size_t quantity) {
-  Tally out;
-  for (const Line& line : analysis.lines.lines) {
-    const std::optional<Fit>& fit = line.fits[quantity];
-    if (!fit) continue;
-    if (fit->verdict == Settling::too_few) {
-      out.unjudged.push_back(&line);
-    } else {
-      (fit->settles() ? out.settling : out.moving).push_back(&line);
-      if (std::isfinite(fit->beside)) out.beside.push_back(&line);
-    }
-  }
-  return out;
-}
-
-std::string order_range(const std::vector<const Line*>& lines) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Line* line : lines) {
-    const double order = line->fits[0]->order;
-    if (!std::isfinite(order)) continue;
-    low = std::min(low, order);
-    high = std::max(high, order);
-  }
-  return low > high ? "" : "order " + range_text(order_text(low), order_text(high));
-}
-
-std::string in_brackets(const std::string& text) { return text.empty() ? "" : " (" + text + ")"; }
-
-std::string split_words(const StudyData& data, const Tally& lines, const Cause& cause) {
-  const std::string what = data.quantities[0].column + " from converging is " + conditions_text(data, cause.conditions);
-  const int settle_with = cause.with - cause.hits_with, settle_without = cause.without - cause.hits_without;
-  return "What keeps " + what + ": " + of_all(settle_with, cause.with) + (cause.with == 1 ? " line" : " lines") +
-         " with it " + (cause.with == 1 ? "settles" : "settle") + ", " + of_all(settle_without, cause.without) +
-         " without" + in_brackets(order_range(lines.settling));
-}
-
-Cause cause_of_moving(const StudyData& data, const Analysis& analysis, const Tally& lines) {
-  std::vector<Case> cases;
-  for (const Line* line : lines.settling) cases.push_back({data.runs[at(line->runs[0])].choice, false});
-  for (const Line* line : lines.moving) cases.push_back({data.runs[at(line->runs[0])].choice, true});
-  return find_cause(cases, analysis.lines.axes);
-}
-
-std::string convergence_words(const StudyData& data, const Analysis& analysis, const Tally& lines) {
-  const std::string name = data.quantities[0].column;
-  const int settling = static_cast<int>(lines.settling.size()), judged = lines.judged();
-  if (judged == 0) {
-    return name + ": too few runs converged to tell whether it settles as the mesh is refined";
-  }
-  const std::string& first = (settling > 0 ? lines.settling : lines.moving)[0]->fits[0]->text;
-  if (judged == 1) return name + (settling > 0 ? " converges: " : " does not settle: it ") + first;
-  if (settling == judged) {
-    std::string out =
-        name + " converges in all " + std::to_string(judged) + " lines" + in_brackets(order_range(lines.settling));
-    if (!lines.beside.empty()) out += ", in " + std::to_string(lines.beside.size()) + " of them beside the reference";
-    return out;
-  }
-  if (settling == 0) return name + " settles in none of " + std::to_string(judged) + " lines; the first one " + first;
-  const Cause cause = cause_of_moving(data, analysis, lines);
-  if (cause.found()) return split_words(data, lines, cause);
-  return name + " settles in " + of_all(settling, judged) + " lines" + in_brackets(order_range(lines.settling)) +
-         "; no axis tells which";
-}
-
-/// "per-node, nodes and 2 more: moves by 31 % with every doubling", lines with the same behaviour together.
-void add_behaviours(const std::vector<const Line*>& lines, std::vector<std::string>& parts) {
-  std::vector<std::pair<const Line*, int>> kinds;
-  for (const Line* line : lines) {
-    const auto known = std::find_if(kinds.begin(), kinds.end(),
-                                    [&](const auto& kind) { return kind.first->fits[0]->text == line->fits[0]->text; });
-    if (known == kinds.end()) {
-      kinds.emplace_back(line, 0);
-    } else {
-      ++known->second;
-    }
-  }
-  for (const auto& [first, more] : kinds) {
-    const std::string others = more > 0 ? " and " + std::to_string(more) + " more" : "";
-    parts.push_back(first->label + others + ": " + first->fits[0]->text);
-  }
-}
-
-std::string convergence_detail(const StudyData& data, const Analysis& analysis, const Tally& lines) {
-  std::vector<std::string> parts;
-  for (const std::vector<const Line*>* group : {&lines.moving, &lines.settling, &lines.unjudged}) {
-    add_behaviours(*group, parts);
-  }
-  std::string out = listed(parts);
-  std::vector<std::string> others;
-  for (std::size_t q = 1; q < data.quantities.size(); ++q) {
-    const Tally own = tally(analysis, q);
-    if (own.judged() == 0) continue;
-    others.push_back(data.quantities[q].column + " settles in " +
-                     of_all(static_cast<int>(own.settling.size()), own.judged()));
-  }
-  if (!others.empty()) out += " Of the others, " + listed(others);
-  return out;
-}
-
-void add_convergence(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
-  if (data.quantities.empty()) return;
-  const Tally lines = tally(analysis, 0);
-  if (lines.judged() == 0 && lines.unjudged.empty()) return;
-  out.push_back(
-      {HeadlineKind::convergence, convergence_words(data, analysis, lines), convergence_detail(data, analysis, lines)});
 }
 
 std::string instead_of(const StudyData& data, const Effect& effect) {
@@ -218,6 +97,35 @@ void add_distribution(const StudyData& data, const Analysis& analysis, std::vect
   if (!all[0].note.empty()) parts.push_back(all[0].note);
   for (std::size_t k = 1; k < all.size(); ++k) parts.push_back(distribution_words(data, all[k]));
   out.push_back({HeadlineKind::effect, distribution_words(data, all[0]), listed(parts)});
+}
+
+/// Of a grid whose axes have too many numbers for effects: which of them the first quantity follows most.
+void add_sensitivity(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
+  std::map<int, std::vector<double>> sizes;  // axis → |elasticity| at its places
+  for (const Sensitivity& place : analysis.sensitivities) {
+    for (const SensitivityEntry& entry : place.entries) {
+      if (place.quantity == 0 && std::isfinite(entry.elasticity))
+        sizes[entry.axis].push_back(std::fabs(entry.elasticity));
+    }
+  }
+  if (sizes.empty()) return;
+  std::vector<std::pair<double, int>> medians;
+  for (auto& [axis, values] : sizes) {
+    std::sort(values.begin(), values.end());
+    medians.emplace_back(quantile(values, 0.5), axis);
+  }
+  std::stable_sort(medians.begin(), medians.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  const auto name = [&](int axis) { return data.axes[at(axis)].name; };
+  std::string text = "1 % more of " + name(medians[0].second) + " changes " + data.quantities[0].column + " by " +
+                     percent(0.01 * medians[0].first);
+  if (medians.size() > 1) text += ", of " + name(medians[1].second) + " by " + percent(0.01 * medians[1].first);
+  std::vector<std::string> ranges;
+  for (const auto& [median, axis] : medians) {
+    const std::vector<double>& values = sizes[axis];
+    ranges.push_back(name(axis) + " " + percent_range(0.01 * values.front(), 0.01 * values.back()) + " at " +
+                     counted(static_cast<int>(values.size()), "place"));
+  }
+  out.push_back({HeadlineKind::effect, text, "Medians of the size over the places of the grid; " + listed(ranges)});
 }
 
 void add_inseparable(const Analysis& analysis, std::vector<Headline>& out) {
@@ -302,9 +210,12 @@ std::vector<Headline> write_headlines(const StudyData& data, const Analysis& ana
   std::vector<Headline> out;
   const Recommendation& best = analysis.recommendation;
   if (!best.text.empty()) out.push_back({HeadlineKind::recommendation, best.text, best.detail});
-  add_convergence(data, analysis, out);
+  if (const auto convergence = convergence_headline(data, analysis.lines)) out.push_back(*convergence);
   add_effect(data, analysis, out);
   add_distribution(data, analysis, out);
+  const bool has_effect =
+      std::any_of(out.begin(), out.end(), [](const Headline& h) { return h.kind == HeadlineKind::effect; });
+  if (!has_effect) add_sensitivity(data, analysis, out);
   add_inseparable(analysis, out);
   add_invalid(data, out);
   add_failures(data, out);

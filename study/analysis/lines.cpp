@@ -37,6 +37,8 @@ Sequence sequence_of(const StudyData& data, const Line& line, int quantity, cons
   for (int run : line.runs) {
     const int choice = data.runs[at(run)].choice[at(data.along)];
     if (choice < 0) continue;
+    const bool refines = out.resolution.empty() || resolution[at(choice)] > out.resolution.back();
+    if (!refines) continue;  // two alternatives of one size
     const double value = counted_value(data, quantity, run);
     if (!std::isfinite(value)) {
       ++out.failures;
@@ -44,7 +46,7 @@ Sequence sequence_of(const StudyData& data, const Line& line, int quantity, cons
     }
     out.resolution.push_back(resolution[at(choice)]);
     out.value.push_back(value);
-    out.reference = data.quantities[at(quantity)].reference[at(run)];
+    out.reference = reference_of(data, quantity, run);
   }
   return out;
 }
@@ -129,10 +131,14 @@ double counted_value(const StudyData& data, int quantity, int run) {
   return data.quantities[at(quantity)].value[at(run)];
 }
 
+double reference_of(const StudyData& data, int quantity, int run) {
+  const QuantityData& own = data.quantities[at(quantity)];
+  return own.has_reference() ? own.reference[at(run)] : std::numeric_limits<double>::quiet_NaN();
+}
+
 double relative_error(const StudyData& data, int quantity, int run) {
-  const QuantityData& q = data.quantities[at(quantity)];
-  if (!q.has_reference()) return std::numeric_limits<double>::quiet_NaN();
-  const double miss = std::fabs(q.value[at(run)] - q.reference[at(run)]), size = std::fabs(q.reference[at(run)]);
+  const double reference = reference_of(data, quantity, run), size = std::fabs(reference);
+  const double miss = std::fabs(data.quantities[at(quantity)].value[at(run)] - reference);
   return size > 0.0 ? miss / size : miss;
 }
 

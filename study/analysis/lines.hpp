@@ -53,7 +53,9 @@ bool at_mesh(const StudyData& data, int run, int mesh);
 
 /// Value of a quantity in a run that counts: a converged one; else NaN.
 double counted_value(const StudyData& data, int quantity, int run);
-/// Relative to the reference, or absolute where that is 0; NaN where either is not known.
+/// NaN where there is none.
+double reference_of(const StudyData& data, int quantity, int run);
+/// Of whatever value a run has: relative to the reference, or absolute where that is 0; NaN where either is not known.
 double relative_error(const StudyData& data, int quantity, int run);
 
 }  // namespace bowstring::study

@@ -15,9 +15,8 @@ namespace bowstring::study {
 
 namespace {
 
-constexpr double noise_of_time = 1.2;
+constexpr double noise_of_time = 1.2;  // a ratio below it says nothing
 constexpr std::size_t few_numbers = 6;
-constexpr std::size_t most_listed = 8;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -74,7 +73,7 @@ class Finder {
       const RunData& record = data_.runs[at(run)];
       const int mesh = data_.along < 0 ? -1 : record.choice[at(data_.along)];
       if (data_.along >= 0 && mesh < 0) continue;
-      if (!std::isfinite(data_.quantities[0].reference[at(run)])) continue;
+      if (!std::isfinite(reference_of(data_, 0, run))) continue;
       std::vector<int> choice;
       for (int axis : out_.axes) choice.push_back(record.choice[at(axis)]);
       std::vector<Point>& points = formulations_[choice];
@@ -87,8 +86,7 @@ class Finder {
   void measure(Point& point) const {
     std::vector<double> seconds;
     for (int run : point.runs) {
-      const bool counts =
-          std::isfinite(counted_value(data_, 0, run)) && std::isfinite(data_.runs[at(run)].solve_seconds);
+      const bool counts = std::isfinite(counted_value(data_, 0, run)) && data_.runs[at(run)].solve_seconds > 0.0;
       point.counts = point.counts && counts;
       if (!counts) continue;
       point.error = std::max(point.error, relative_error(data_, 0, run));
@@ -114,7 +112,7 @@ class Finder {
     bool stays = true;
     for (const Point& point : points) {  // the finest first
       stays = stays && point.error <= data_.target_error;
-      if (stays && (fastest == nullptr || point.seconds < fastest->seconds)) fastest = &point;
+      if (stays && (fastest == nullptr || point.seconds <= fastest->seconds)) fastest = &point;
       if (best == nullptr || point.error < best->error) best = &point;
     }
     if (best == nullptr) return out;
@@ -151,17 +149,19 @@ class Finder {
 
   std::string choice_words() {
     const std::vector<Candidate>& all = out_.candidates;
-    const bool has_next = all.size() > 1 && all[1].reaches;
-    const bool even = has_next && all[1].seconds <= noise_of_time * all[0].seconds;
+    const auto slower = std::find_if(all.begin(), all.end(), [&](const Candidate& c) {
+      return !c.reaches || c.seconds > noise_of_time * all[0].seconds;
+    });
+    const auto even = slower - all.begin();
     std::string out = "Use " + place(all[0]);
-    if (even) {
+    if (even == 2) {
       out += " or " + place(all[1]) + ": " + cost(all[0]) + " and " + cost(all[1]) + ", as fast as each other";
     } else {
       out += ": " + cost(all[0]);
     }
-    const std::size_t next = even ? 2 : 1;
-    if (next < all.size() && all[next].reaches) {
-      add_clause(out, ", " + times(all[next].seconds / all[0].seconds) + " faster than " + compared(all[next]),
+    if (even > 2) out += "; " + std::to_string(even - 1) + " others are as fast";
+    if (slower != all.end() && slower->reaches) {
+      add_clause(out, ", " + times(slower->seconds / all[0].seconds) + " faster than " + compared(*slower),
                  headline_length);
     }
     const std::string others = losers_words();
@@ -169,7 +169,7 @@ class Finder {
     return out;
   }
 
-  static std::string times(double ratio) { return figure(ratio, ratio < 99.5 ? 2 : 3) + " times"; }
+  static std::string times(double ratio) { return figure(ratio, 2) + " times"; }
 
   std::string nothing_words() const {
     const Candidate& best = out_.candidates[0];
@@ -179,12 +179,15 @@ class Finder {
            place(best) + ", with " + cost(best);
   }
 
+  /// Those with a point, or else all.
   std::vector<const Candidate*> losers() const {
-    std::vector<const Candidate*> out;
+    std::vector<const Candidate*> all, measured;
     for (const Candidate& c : out_.candidates) {
-      if (!c.reaches) out.push_back(&c);
+      if (c.reaches) continue;
+      all.push_back(&c);
+      if (c.points > 0) measured.push_back(&c);
     }
-    return out;
+    return measured.empty() ? all : measured;
   }
 
   /// What tells a candidate from the first: "with segment-wise", or its label where they differ in more than one axis.
@@ -223,6 +226,10 @@ class Finder {
     return count == 1 ? losers().front()->label : std::to_string(count) + " others";
   }
 
+  std::string nowhere() const {
+    return data_.along < 0 ? " not converge in every case" : " no mesh on which all runs converge";
+  }
+
   std::string losers_words() const {
     const std::vector<const Candidate*> all = losers();
     if (all.empty()) return "";
@@ -232,7 +239,7 @@ class Finder {
     }
     bool several = false;
     const std::string name = losers_name(all, several);
-    if (!std::isfinite(least)) return name + (several ? " have" : " has") + " no mesh on which all runs converge";
+    if (!std::isfinite(least)) return name + (data_.along < 0 ? " did" : several ? " have" : " has") + nowhere();
     if (least <= data_.target_error) return name + (several ? " do" : " does") + " not stay within " + target();
     return name + " never " + (several ? "get" : "gets") + " below " + percent(least);
   }
@@ -240,7 +247,7 @@ class Finder {
   std::string candidate_words(const Candidate& c) const {
     std::string out = c.label.empty() ? "" : c.label + ": ";
     if (c.points == 0) {
-      out += "no mesh on which all runs converge";
+      out += (data_.along < 0 ? "did" : "has") + nowhere();
     } else if (c.reaches) {
       out += (c.mesh < 0 ? "" : mesh_text(c) + ", ") + cost(c);
     } else {
@@ -254,18 +261,13 @@ class Finder {
 
   std::string detail() const {
     std::vector<std::string> parts;
-    for (const Candidate& c : out_.candidates) {
-      if (parts.size() < most_listed) parts.push_back(candidate_words(c));
-    }
+    for (const Candidate& c : out_.candidates) parts.push_back(candidate_words(c));
     std::string out = left_out_ + "To bring " + data_.quantities[0].column + " within " + target() + " of " +
                       data_.quantities[0].reference_text +
-                      ", and keep it there on finer meshes: " + joined(parts, "; ");
-    if (parts.size() < out_.candidates.size()) {
-      out += "; and " + std::to_string(out_.candidates.size() - parts.size()) + " more";
-    }
+                      (data_.along < 0 ? ": " : ", and keep it there on finer meshes: ") + listed(parts);
     const std::size_t cases = out_.candidates[0].runs.size();
-    if (cases > 1) out += ". Errors are the largest, times the mean of " + std::to_string(cases) + " cases";
-    return out + ".";
+    if (cases > 1) out += " Errors are the largest, times the mean of " + std::to_string(cases) + " cases.";
+    return out;
   }
 
   const StudyData& data_;

@@ -29,7 +29,7 @@ Extrapolation from_three(const double x[3], const double f[3]) {
   const double blur = rounding * std::max(std::fabs(f[1]), std::fabs(f[2]));
   if (std::fabs(fine) <= blur) return {f[2], unknown, std::max(std::fabs(fine), blur), ""};
   if (coarse * fine <= 0.0) return refused("the three finest values, " + listed(f) + ", are not monotone");
-  const double order = order_of_three(x, coarse, fine);
+  const double order = order_of_two({x[0], x[1], std::fabs(coarse)}, {x[1], x[2], std::fabs(fine)});
   if (order < least_order || order > most_order) {
     return refused("the three finest values, " + listed(f) + ", have order " + figure(order, 2) +
                    ", outside 0.3…6: they do not settle as a refinement does");
@@ -40,18 +40,16 @@ Extrapolation from_three(const double x[3], const double f[3]) {
 
 }  // namespace
 
-double difference_shape(double a, double b, double order) {
-  if (!std::isfinite(b)) return -order * std::log(a);
-  const double step = std::log(b / a), turned = order * step;
-  const double factor = std::fabs(turned) < 1e-8 ? step : -std::expm1(-turned) / order;
-  return -order * std::log(a) + std::log(factor);
+double difference_shape(const Difference& difference, double order) {
+  const double start = -order * std::log(difference.a);
+  if (!std::isfinite(difference.b)) return start;
+  const double step = std::log(difference.b / difference.a), turned = order * step;
+  return start + std::log(std::fabs(turned) < 1e-8 ? step : -std::expm1(-turned) / order);
 }
 
-double order_of_three(const double x[3], double coarse_difference, double fine_difference) {
-  const double wanted = std::log(std::fabs(coarse_difference / fine_difference));
-  const auto miss = [&](double p) {
-    return difference_shape(x[0], x[1], p) - difference_shape(x[1], x[2], p) - wanted;
-  };
+double order_of_two(const Difference& coarse, const Difference& fine) {
+  const double wanted = std::log(coarse.size / fine.size);
+  const auto miss = [&](double p) { return difference_shape(coarse, p) - difference_shape(fine, p) - wanted; };
   const double low = miss(least_root), high = miss(most_root);  // it rises with p
   if (!(low < 0.0)) return least_root;
   if (!(high > 0.0)) return most_root;

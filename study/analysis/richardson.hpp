@@ -22,10 +22,15 @@ struct Extrapolation {
 /// monotone, p outside 0.3 … 6. `resolution` in any order, above 0; values that are not finite are left out.
 Extrapolation extrapolate(const std::vector<double>& resolution, const std::vector<double>& value);
 
-/// p of three values with differences f₁ − f₂ and f₂ − f₃ of whatever sign, coarse to fine; held to −20 … 40.
-double order_of_three(const double resolution[3], double coarse_difference, double fine_difference);
+/// |f(a) − f(b)| at two resolutions, b the finer one; b infinite for |f(a) − f∞|.
+struct Difference {
+  double a, b, size;
+};
 
-/// ln |(a^−p − b^−p)/p|, what ln |f(a) − f(b)| is up to a constant; b above a, maybe infinite.
-double difference_shape(double a, double b, double order);
+/// ln |(a^−p − b^−p)/p|, what ln size is up to a constant.
+double difference_shape(const Difference& difference, double order);
+
+/// p from two differences, the fine one beyond the coarse one; held to −20 … 40.
+double order_of_two(const Difference& coarse, const Difference& fine);
 
 }  // namespace bowstring::study

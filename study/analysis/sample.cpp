@@ -1,5 +1,6 @@
 #include "study/analysis/sample.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -28,7 +29,8 @@ std::vector<Sample> find_samples(const StudyData& data) {
   std::map<std::vector<int>, std::size_t> known;
   for (int run = 0; run < static_cast<int>(data.runs.size()); ++run) {
     const std::vector<int>& choice = data.runs[at(run)].choice;
-    if (choice[at(axes[0])] < 0 || !at_mesh(data, run, mesh)) continue;
+    const bool has_part = std::all_of(axes.begin(), axes.end(), [&](int axis) { return choice[at(axis)] >= 0; });
+    if (!has_part || !at_mesh(data, run, mesh)) continue;
     std::vector<int> key;
     for (int axis : others) key.push_back(choice[at(axis)]);
     const auto [entry, first] = known.emplace(key, out.size());

@@ -1,11 +1,16 @@
 #include "study/analysis/words.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "core/composition/nearest.hpp"
 
 namespace bowstring::study {
 
 namespace {
+
+constexpr std::size_t most_listed = 8;
 
 std::string formatted(const char* format, int digits, double value) {
   char text[64];
@@ -13,23 +18,21 @@ std::string formatted(const char* format, int digits, double value) {
   return text;
 }
 
-/// Two significant digits, without an exponent where there are more before the point.
-std::string two_digits(double value) {
-  return std::fabs(value) >= 99.5 ? formatted("%.*f", 0, value) : formatted("%.*g", 2, value);
-}
-
 }  // namespace
 
-std::string figure(double value, int digits) { return formatted("%.*g", digits, value); }
+std::string figure(double value, int digits) {
+  const bool longer = std::fabs(value) >= std::pow(10.0, digits) - 0.5;
+  return longer && std::fabs(value) < 1e9 ? formatted("%.*f", 0, value) : formatted("%.*g", digits, value);
+}
 
-std::string percent(double share) { return two_digits(100.0 * share) + " %"; }
+std::string percent(double share) { return figure(100.0 * share, 2) + " %"; }
 
 std::string percent_range(double low, double high) {
-  return range_text(two_digits(100.0 * low), two_digits(100.0 * high)) + " %";
+  return range_text(figure(100.0 * low, 2), figure(100.0 * high, 2)) + " %";
 }
 
 std::string seconds_text(double seconds) {
-  return seconds < 0.0995 ? two_digits(1000.0 * seconds) + " ms" : two_digits(seconds) + " s";
+  return seconds < 0.0995 ? figure(1000.0 * seconds, 2) + " ms" : figure(seconds, 2) + " s";
 }
 
 std::string order_text(double order, int decimals) { return formatted("%.*f", decimals, order); }
@@ -39,6 +42,16 @@ std::string counted(int count, const std::string& singular) {
 }
 
 std::string range_text(const std::string& low, const std::string& high) { return low == high ? low : low + "…" + high; }
+
+std::string of_all(int count, int all) { return std::to_string(count) + " of " + std::to_string(all); }
+
+std::string listed(const std::vector<std::string>& parts) {
+  if (parts.empty()) return "";
+  const auto shown = std::min(parts.size(), most_listed);
+  std::string out = joined({parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(shown)}, "; ");
+  if (shown < parts.size()) out += "; and " + std::to_string(parts.size() - shown) + " more";
+  return out + ".";
+}
 
 std::string alternatives_text(const std::vector<std::string>& names) {
   std::string out;

@@ -5,7 +5,7 @@
 
 namespace bowstring::study {
 
-/// "9.75", "0.0031", "1.2e-07": so many significant digits.
+/// "9.75", "0.0031", "1.2e-07", "1234": so many significant digits, and all before the point.
 std::string figure(double value, int digits = 3);
 /// "12 %", "0.31 %" of a share.
 std::string percent(double share);
@@ -19,6 +19,10 @@ std::string order_text(double order, int decimals = 1);
 std::string counted(int count, const std::string& singular);
 /// "1.9…2.1", or one of them where both read the same.
 std::string range_text(const std::string& low, const std::string& high);
+/// "3 of 6".
+std::string of_all(int count, int all);
+/// "a; b; and 3 more." of so many that the first eight are enough; "" of none.
+std::string listed(const std::vector<std::string>& parts);
 /// "a", "a or b", "a, b or c".
 std::string alternatives_text(const std::vector<std::string>& names);
 

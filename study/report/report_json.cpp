@@ -61,19 +61,18 @@ Json quantities(const StudyData& data) {
   Json out = Json::array();
   for (int q = 0; q < static_cast<int>(data.quantities.size()); ++q) {
     const QuantityData& quantity = data.quantities[at(q)];
-    Json errors = nullptr;
-    if (quantity.has_reference()) {
-      errors = Json::array();
-      for (int run = 0; run < static_cast<int>(data.runs.size()); ++run) {
-        errors.push_back(finite(relative_error(data, q, run)));
-      }
+    Json errors = Json::array(), references = Json::array();
+    for (int run = 0; run < static_cast<int>(data.runs.size()); ++run) {
+      errors.push_back(finite(relative_error(data, q, run)));
+      references.push_back(finite(reference_of(data, q, run)));
     }
+    if (!quantity.has_reference()) errors = nullptr;
     out.push_back({{"column", quantity.column},
                    {"unit", quantity.unit},
                    {"path", quantity.path},
                    {"reference_text", quantity.reference_text},
                    {"values", numbers(quantity.value)},
-                   {"references", numbers(quantity.reference)},
+                   {"references", references},
                    {"errors", errors}});
   }
   return out;

@@ -34,9 +34,10 @@ TEST_CASE("all lines settle, one of them beside the reference") {
   });
   const Analysis analysis = analyse(data);
   CHECK(analysis.headlines[1].text ==
-        "peak_displacement_mm converges in all 6 lines (order 2.0), in 1 of them beside the reference");
+        "peak_displacement_mm converges in all 6 lines (order 2.0), 1 of them beside the reference");
   CHECK(analysis.headlines[1].detail.find(
-            "per-node, node-wise: settles, order 2.00 ± 0.00, 1 % beside the reference") != std::string::npos);
+            "per-node, node-wise: settles, order 2.00 ± 0.00, 1 % beside the reference. Beside the reference, by 1 %, "
+            "settle 1 of 6: 1 of 1 with anchoring = per-node and contact = node-wise.") != std::string::npos);
 }
 
 TEST_CASE("an impure split, none, and a single line") {
@@ -108,6 +109,22 @@ TEST_CASE("a sample opens with its distribution, and warns of parameters that ac
   CHECK(analysis.headlines[0].text == "q_mm: median 5.78 mm, 5…95 %: 2.97…9.82 mm; a makes up 68 % of its variance");
   CHECK(analysis.headlines[1].kind == HeadlineKind::warning);
   CHECK(analysis.headlines[1].text.rfind("a and b act alike (cosine ", 0) == 0);
+}
+
+TEST_CASE("a grid opens with the parameter that matters most") {
+  std::vector<double> numbers;
+  for (int k = 1; k <= 9; ++k) numbers.push_back(std::pow(2.0, k));
+  StudyData data = study_of({number_axis("T", numbers, "N", Spacing::logarithmic),
+                             number_axis("EI", numbers, "N mm^2", Spacing::logarithmic)},
+                            {"q_mm"});
+  add_product(data);
+  fill(data, 0, [](const StudyData& d, const RunData& run) {
+    return 100.0 + std::log(number(d, run, 0)) - 2.0 * std::log(number(d, run, 1));
+  });
+  const Analysis analysis = analyse(data);
+  REQUIRE(analysis.headlines.size() == 2);
+  CHECK(analysis.headlines[0].text == "1 % more of EI changes q_mm by 0.021 %, of T by 0.01 %");
+  CHECK(analysis.headlines[1].kind == HeadlineKind::warning);
 }
 
 TEST_CASE("failures are counted, with what they have in common") {

@@ -55,6 +55,16 @@ TEST_CASE("within noise both are named") {
         "Use node-wise at N = 40 or segment-wise at N = 40: 0.4 % in 2 s and 0.5 % in 2.3 s, as fast as each other");
 }
 
+TEST_CASE("more than two that are as fast are counted, and of equal times the coarser mesh is taken") {
+  StudyData data = study_of({words_axis("contact", {"a", "b", "c", "d"}), number_axis("N", {20, 40})}, {"q_mm"});
+  data.along = 1;
+  add_product(data);
+  data.quantities[0].value.assign(8, 1.001);
+  refer(data, 0, 1.0);
+  for (int run : {6, 7}) data.runs[static_cast<std::size_t>(run)].solve_seconds = 5.0;
+  CHECK(recommend(data).text == "Use a at N = 20: 0.1 % in 1 s; 2 others are as fast, 5 times faster than d");
+}
+
 TEST_CASE("a finer mesh that is faster is the one to use") {
   CHECK(recommend(two({0.005, 0.004, 0.001, 0.1, 0.1, 0.1}, {9, 2, 4, 1, 2, 5})).candidates[0].mesh == 1);
 }
@@ -92,6 +102,20 @@ TEST_CASE("other numbers are cases: the largest error counts") {
   CHECK(out.text == "Use b at N = 20: 0.6 % in 1 s, 4 times faster than a");
   CHECK(out.candidates[0].runs == std::vector<int>{4, 6});
   CHECK(out.detail.find("the mean of 2 cases.") != std::string::npos);
+}
+
+TEST_CASE("without a mesh every formulation has one point") {
+  StudyData data = study_of({words_axis("contact", {"a", "b", "c"})}, {"q_mm"});
+  add_product(data);
+  data.quantities[0].value = {1.001, 1.1, 1.0};
+  refer(data, 0, 1.0);
+  fail(data, 2);
+  const Recommendation out = recommend(data);
+  CHECK(out.text == "Use a: 0.1 % in 1 s; b never gets below 10 %");
+  CHECK(out.detail ==
+        "To bring q_mm within 1 % of the known answer: a: 0.1 % in 1 s; b: never below 10 %; c: did not converge in "
+        "every "
+        "case (1 of 1 run failed).");
 }
 
 TEST_CASE("a study of one formulation") {

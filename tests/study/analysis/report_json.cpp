@@ -61,6 +61,7 @@ TEST_CASE("a study along a mesh") {
 TEST_CASE("a sample, without a reference") {
   StudyData data = sample_of_two(64, {"q_mm"});
   fill(data, 0, [](const StudyData& d, const RunData& run) { return number(d, run, 0) + number(d, run, 1); });
+  data.quantities[0].reference.clear();
   const Json json = report(data);
   CHECK(json["along"].is_null());
   CHECK(json["line_over"].is_null());

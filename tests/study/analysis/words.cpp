@@ -7,6 +7,10 @@ namespace {
 using namespace bowstring::study;
 
 TEST_CASE("numbers as people read them") {
+  CHECK(figure(9.7501) == "9.75");
+  CHECK(figure(1234.4) == "1234");
+  CHECK(figure(999.7) == "1000");
+  CHECK(figure(-0.00312) == "-0.00312");
   CHECK(percent(0.0031) == "0.31 %");
   CHECK(percent(0.124) == "12 %");
   CHECK(percent(1.0) == "100 %");
