@@ -18,8 +18,9 @@ const char* headline_kind_name(HeadlineKind kind) noexcept;
 /// What a report opens with, for people.
 struct Headline {
   HeadlineKind kind = HeadlineKind::failures;
-  std::string text;    ///< one sentence
-  std::string detail;  ///< what stands behind it
+  std::string text;             ///< one sentence
+  std::string detail;           ///< what stands behind it
+  std::vector<int> lines = {};  ///< the formulations that it speaks of, by index; empty: of none in particular
 };
 
 /// What a study's results say. Runs without a value, and those that have not converged, are left out and counted; they

@@ -77,6 +77,25 @@ void add_effect(const StudyData& data, const Analysis& analysis, std::vector<Hea
                  detail});
 }
 
+/// Those of the formulation that is recommended, one for each of its cases.
+std::vector<int> recommended_lines(const Analysis& analysis) {
+  const Recommendation& recommendation = analysis.recommendation;
+  std::vector<int> out;
+  if (recommendation.candidates.empty() || recommendation.axes.empty()) return out;
+  const std::vector<int>& choice = recommendation.candidates.front().choice;
+  for (std::size_t l = 0; l < analysis.lines.lines.size(); ++l) {
+    bool same = true;
+    for (std::size_t k = 0; k < recommendation.axes.size(); ++k) {
+      const auto place = std::find(analysis.lines.axes.begin(), analysis.lines.axes.end(), recommendation.axes[k]);
+      if (place == analysis.lines.axes.end()) continue;
+      same = same &&
+             analysis.lines.lines[l].choice[at(static_cast<int>(place - analysis.lines.axes.begin()))] == choice[k];
+    }
+    if (same) out.push_back(static_cast<int>(l));
+  }
+  return out;
+}
+
 std::string distribution_words(const StudyData& data, const Distribution& d) {
   const QuantityData& quantity = data.quantities[at(d.quantity)];
   std::string out = quantity.column + (d.label.empty() ? "" : " with " + d.label) + ": median " +
@@ -209,7 +228,9 @@ void keep_five(std::vector<Headline>& headlines) {
 std::vector<Headline> write_headlines(const StudyData& data, const Analysis& analysis) {
   std::vector<Headline> out;
   const Recommendation& best = analysis.recommendation;
-  if (!best.text.empty()) out.push_back({HeadlineKind::recommendation, best.text, best.detail});
+  if (!best.text.empty()) {
+    out.push_back({HeadlineKind::recommendation, best.text, best.detail, recommended_lines(analysis)});
+  }
   if (const auto convergence = convergence_headline(data, analysis.lines)) out.push_back(*convergence);
   add_effect(data, analysis, out);
   add_distribution(data, analysis, out);

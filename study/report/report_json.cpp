@@ -38,7 +38,7 @@ Json study(const StudyData& data) {
 Json headlines(const Analysis& analysis) {
   Json out = Json::array();
   for (const Headline& h : analysis.headlines) {
-    out.push_back({{"kind", headline_kind_name(h.kind)}, {"text", h.text}, {"detail", h.detail}});
+    out.push_back({{"kind", headline_kind_name(h.kind)}, {"text", h.text}, {"detail", h.detail}, {"lines", h.lines}});
   }
   return out;
 }
