@@ -19,6 +19,7 @@ struct AxisData {
   std::vector<std::string> label;  ///< per alternative, in the order of the study file: "10 N", "node-wise-contact"
   std::vector<double> number;      ///< per alternative, in `unit`; empty where an alternative is no number
   Spacing spacing = Spacing::listed;
+  bool is_case = false;  ///< its alternatives are other problems, not other ways to solve one
 
   bool numeric() const noexcept { return !number.empty(); }
 };

@@ -25,8 +25,8 @@ constexpr long most_repeats = 1000;
 
 const std::vector<std::string>& study_keys() {
   static const std::vector<std::string> names{
-      "schema",  "title",     "base",       "set",   "axes",         "combine",    "zipped",  "exclude",
-      "repeats", "reference", "quantities", "along", "target-error", "warm-along", "reduced", "time-limit"};
+      "schema",    "title",      "base",  "set",          "axes",       "combine", "zipped",     "exclude", "repeats",
+      "reference", "quantities", "along", "target-error", "warm-along", "reduced", "time-limit", "cases"};
   return names;
 }
 
@@ -70,6 +70,7 @@ class StudyReader {
     read_base();
     read_combination();
     read_exclusions();
+    read_cases();
     out_.repeats = static_cast<int>(whole_at("repeats", 1, most_repeats, 1));
     out_.target_error = number_at("target-error", "", 0.01);
     out_.time_limit = number_at("time-limit", "s", 0.0);
@@ -337,6 +338,19 @@ class StudyReader {
            "one of: " + comma_separated(axis.data.label), "name a value of the axis");
     }
     exclusion.choices.emplace_back(a, std::move(alternatives));
+  }
+
+  void read_cases() {
+    const Entry* entry = root_.find("cases");
+    if (entry == nullptr) return;
+    if (!entry->value.is_list()) {
+      fail(entry->value.position, "'cases' is " + description(entry->value), "a list of axes",
+           "write cases = [\"scene\"]");
+    }
+    for (const Node& name : entry->value.items) {
+      const int axis = axis_called(name.text, name.position, "'cases'");
+      if (axis >= 0) out_.axes[static_cast<std::size_t>(axis)].data.is_case = true;
+    }
   }
 
   /// Where the file does not say it: the axis of meshes is the one whose paths all end with `nodes`.

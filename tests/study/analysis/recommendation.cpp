@@ -65,6 +65,22 @@ TEST_CASE("more than two that are as fast are counted, and of equal times the co
   CHECK(recommend(data).text == "Use a at N = 20: 0.1 % in 1 s; 2 others are as fast, 5 times faster than d");
 }
 
+TEST_CASE("alternatives that are cases are not chosen between, and the worst of them counts") {
+  StudyData data = study_of({words_axis("contact", {"node-wise", "segment-wise"}),
+                             words_axis("scene", {"planar", "helical"}), number_axis("N", {20, 40})},
+                            {"q_mm"});
+  data.axes[1].is_case = true;
+  data.along = 2;
+  add_product(data);
+  data.quantities[0].value = {1.001, 1.001, 1.05, 1.004, 1.002, 1.001, 1.003, 1.001};
+  refer(data, 0, 1.0);
+  for (std::size_t run = 4; run < 8; ++run) data.runs[run].solve_seconds = 4.0;
+  const Recommendation out = recommend(data);
+  REQUIRE(out.candidates.size() == 2);
+  CHECK(out.candidates[0].error == Approx(0.004));
+  CHECK(out.text == "Use node-wise at N = 40: 0.4 % in 1 s, 4 times faster than segment-wise");
+}
+
 TEST_CASE("a finer mesh that is faster is the one to use") {
   CHECK(recommend(two({0.005, 0.004, 0.001, 0.1, 0.1, 0.1}, {9, 2, 4, 1, 2, 5})).candidates[0].mesh == 1);
 }
