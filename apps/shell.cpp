@@ -1,14 +1,22 @@
 #include "apps/shell.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace bowstring::apps {
 
-PluginHost make_host(const CommonOptions& common, const std::string& composition_file) {
-  PluginHostOptions options = plugin_search();
+PluginHostOptions host_options(const CommonOptions& common, const CompositionRequest& request) {
+  PluginHostOptions options = plugin_search(composition_plugin_path(request));
   options.command_line_path = common.plugin_path;
-  if (!composition_file.empty()) options.composition_path = composition_plugin_path({composition_file, {}});
-  return PluginHost(options);
+  return options;
+}
+
+PluginHost make_host(const CommonOptions& common, const std::string& composition_file) {
+  CompositionRequest request;
+  request.file = composition_file;
+  if (composition_file.empty()) request.text = "";
+  return PluginHost(host_options(common, request));
 }
 
 bool parse_overrides(const std::vector<std::string>& set, std::vector<Override>& out) {
@@ -41,6 +49,26 @@ std::string number(double value, int digits) {
 
 std::string counted(int count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+int width(const std::string& text) {
+  constexpr unsigned continued = 0x80U, mask = 0xC0U;  // UTF-8: bytes that begin no character
+  return static_cast<int>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned>(c) & mask) != continued; }));
+}
+
+std::string padded(const std::string& text, int columns) {
+  return text + std::string(static_cast<std::size_t>(std::max(0, columns - width(text))), ' ');
+}
+
+std::string padded_left(const std::string& text, int columns) {
+  return std::string(static_cast<std::size_t>(std::max(0, columns - width(text))), ' ') + text;
+}
+
+int flushed(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  complain("stdout cannot be written");
+  return exit_fell_short;
 }
 
 }  // namespace bowstring::apps

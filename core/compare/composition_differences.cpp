@@ -166,7 +166,9 @@ class Differ {
       const bool both = in_a != nullptr && in_b != nullptr;
       if ((both && *in_a == *in_b) || (key == "type" && other_type)) return;
       const std::string inner = path + "." + path_step(key);
-      const std::string because_of = other_type && !both ? path + ".type" : "";
+      const bool brought_along =
+          other_type && (!both || (is_default(*in_a, declared(a, key)) && is_default(*in_b, declared(b, key))));
+      const std::string because_of = brought_along ? path + ".type" : "";
       if (key == "geometry" && both) {
         compare_tables(inner, *in_a, *in_b, of_component(Kind::geometry));
       } else if (key == "kinematics" && both) {

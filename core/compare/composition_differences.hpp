@@ -13,8 +13,8 @@ namespace bowstring {
 struct CompositionDifference {
   std::string path;                 ///< as an override takes it: "wire.lunderquist.radius"
   std::optional<std::string> a, b;  ///< empty: that composition has nothing there
-  /// The path of a `type` that differs: this key is there because one of the two types declares it, and is no
-  /// difference of its own. "": it is one.
+  /// The path of a `type` that differs: only one of the two declares this key, or each has its own default of it,
+  /// so that it is no difference of its own. "": it is one.
   std::string because_of;
   bool matters = true;  ///< a result can depend on it; not on a title
 };

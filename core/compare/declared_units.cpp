@@ -83,6 +83,12 @@ std::string value_text(const Json& value, const ParameterDeclaration* declaratio
   return written.is_number() ? number_text(written) : toml_value(written.dump());
 }
 
+bool is_default(const Json& value, const ParameterDeclaration* declaration) {
+  if (declaration == nullptr || declaration->default_text == nullptr) return false;
+  const Json declared = Json::parse(declaration->default_text, nullptr, false);  // a plain TOML value is JSON as well
+  return !declared.is_discarded() && declared == value;
+}
+
 const ParameterDeclaration* DeclaredUnits::of_plugin(Kind kind, const Json& table, const std::string& key) const {
   const std::string type = text_of(table, "type");
   if (registry_ == nullptr || type.empty()) return nullptr;

@@ -13,6 +13,9 @@ namespace bowstring {
 /// bare numbers; null: they stand as they are.
 std::string value_text(const nlohmann::ordered_json& value, const ParameterDeclaration* declaration);
 
+/// Whether a value is a parameter's declared default; false where nothing is declared.
+bool is_default(const nlohmann::ordered_json& value, const ParameterDeclaration* declaration);
+
 /// Finds the declarations of what a composition holds.
 class DeclaredUnits {
  public:

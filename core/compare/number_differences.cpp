@@ -109,6 +109,12 @@ std::string kind_of(const std::string& path) {
   return out;
 }
 
+/// What is left of residuals, and how they got there: it differs by any factor where results hardly do.
+bool is_of_solver(const std::string& kind) {
+  const auto within = [&](std::string_view table) { return kind.find(table) != std::string::npos; };
+  return within("certificate.") || within("solver.");
+}
+
 }  // namespace
 
 double NumberDifference::relative() const noexcept {
@@ -136,13 +142,21 @@ std::vector<NumberDifference> largest_differences(const BitComparison& bits, std
     kind.difference = difference;
     kind.largest = &one;
   }
-  std::vector<std::pair<double, const NumberDifference*>> order;
+  struct Place {
+    bool of_solver;
+    double share;
+    const NumberDifference* difference;
+  };
+  std::vector<Place> order;
   for (const auto& [name, kind] : kinds) {
-    order.emplace_back(kind.scale > 0.0 ? kind.difference / kind.scale : kind.difference, kind.largest);
+    const double share = kind.scale > 0.0 ? kind.difference / kind.scale : kind.difference;
+    order.push_back({is_of_solver(name), share, kind.largest});
   }
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::stable_sort(order.begin(), order.end(), [](const Place& a, const Place& b) {
+    return a.of_solver != b.of_solver ? b.of_solver : a.share > b.share;
+  });
   std::vector<NumberDifference> out;
-  for (std::size_t i = 0; i < std::min(most, order.size()); ++i) out.push_back(*order[i].second);
+  for (std::size_t i = 0; i < std::min(most, order.size()); ++i) out.push_back(*order[i].difference);
   return out;
 }
 

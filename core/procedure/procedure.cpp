@@ -100,6 +100,8 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
   const auto begin = std::chrono::steady_clock::now();
   StateResult out;
   const std::string asked = session->composition.resolved_json;
+  std::optional<StartOrigin> start;
+  if (!session->start.q.empty()) start = session->start.origin;
   const ContinuationTable table = session->composition.continuation;
   const MultistartTable multistart = session->composition.multistart;
   const auto build = [&](const CompositionRequest& walked, Refusal& refusal) {
@@ -144,6 +146,7 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
   }
   out.input_files = solved.session->composition.input_files;
   out.solution = std::move(solved.solution);
+  out.solution.start = std::move(start);  // of what was asked, not of a solve that was one of many
   return out;
 }
 
