@@ -28,7 +28,7 @@ struct BitComparison {
 BitComparison compare_bits(const std::string& a, const std::string& b);
 
 /// The differences that are largest beside the largest number of their kind (of their own place in the document, list
-/// positions left out), each kind once, largest first; at most `most`.
+/// positions left out), each kind once, largest first, residuals and the solver last; at most `most`.
 std::vector<NumberDifference> largest_differences(const BitComparison& bits, std::size_t most);
 
 }  // namespace bowstring
