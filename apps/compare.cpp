@@ -24,10 +24,12 @@ bool is_neither_form(const std::string& file, const std::string& text) {
   Report problems;
   const auto source = std::make_shared<Source>(Source{file, {}, 0});
   if (read_toml(text, source, problems)) return false;
-  for (InputError error : problems.sorted()) {
+  Refusal refusal;
+  refusal.errors = problems.sorted();
+  for (InputError& error : refusal.errors) {
     error.expected = "a composition (TOML) or a result document (JSON, also in gzip)";
-    complain(error.text());
   }
+  report(refusal);
   return true;
 }
 

@@ -1,6 +1,5 @@
 #include "apps/given_file.hpp"
 
-#include <cstdio>
 #include <utility>
 
 #include "apps/shell.hpp"
@@ -16,16 +15,16 @@ bool read_given_file(const std::string& file, std::string& text) {
     why = study::gunzip(bytes, text);
   }
   if (why.empty()) return true;
-  complain(file + ": cannot be read (" + why + "); expected a file, plain or in gzip; check the path");
+  report({{{file, "cannot be read (" + why + ")", "a file, plain or in gzip", "check the path"}}, {}});
   return false;
 }
 
 bool read_given_result(const std::string& file, std::string text, RecordedResult& out) {
   std::vector<DocumentFlaw> flaws;
   out = read_result(std::move(text), "the document", flaws);
-  for (const DocumentFlaw& flaw : flaws) {
-    complain(InputError{file, flaw.found, flaw.expected, flaw.mend}.text());
-  }
+  Refusal refusal;
+  for (const DocumentFlaw& flaw : flaws) refusal.errors.push_back({file, flaw.found, flaw.expected, flaw.mend});
+  report(refusal);
   return flaws.empty();
 }
 
