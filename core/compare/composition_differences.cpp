@@ -18,11 +18,6 @@ using Json = nlohmann::ordered_json;
 /// The parameter that is known under a key of a table.
 using Declarations = std::function<const ParameterDeclaration*(const Json& table, const std::string& key)>;
 
-const Json* find(const Json& table, const std::string& key) {
-  const auto found = table.find(key);
-  return found != table.end() ? &*found : nullptr;
-}
-
 /// A profile's form, "" of what is none: its keys belong together.
 std::string form_of(const Json& value) {
   for (const char* form : {"table", "segments", "column"}) {
@@ -41,7 +36,7 @@ std::vector<NamedState> states_of(const Json& root) {
   std::vector<NamedState> out;
   Json composition = root;
   composition.erase("step");
-  const Json* steps = find(root, "step");
+  const Json* steps = find_key(root, "step");
   if (steps == nullptr || steps->empty()) return {{"", std::move(composition)}};
   for (const Json& step : *steps) {
     for (const auto& [key, value] : step.items()) {
@@ -76,7 +71,7 @@ class Differ {
  private:
   template <class Visit>
   static void for_each_key(const Json& a, const Json& b, Visit visit) {
-    for (const auto& [key, value] : a.items()) visit(key, &value, find(b, key));
+    for (const auto& [key, value] : a.items()) visit(key, &value, find_key(b, key));
     for (const auto& [key, value] : b.items()) {
       if (!a.contains(key)) visit(key, nullptr, &value);
     }
@@ -119,6 +114,7 @@ class Differ {
 
   /// The entries of a list of tables, by their names.
   void compare_entries(const std::string& list, const Json& a, const Json& b) {
+    if (!a.is_array() || !b.is_array()) return compare_values(list, &a, &b, nullptr, "");
     std::vector<const Json*> partner_of_a(a.size(), nullptr);
     std::vector<bool> taken(b.size(), false);
     const auto pair_up = [&](const auto& fits) {
@@ -159,7 +155,7 @@ class Differ {
   }
 
   void compare_tables(const std::string& path, const Json& a, const Json& b, const Declarations& declared) {
-    const Json *type_a = find(a, "type"), *type_b = find(b, "type");
+    const Json *type_a = find_key(a, "type"), *type_b = find_key(b, "type");
     const bool other_type = type_a != nullptr && type_b != nullptr && *type_a != *type_b;
     if (other_type) compare_values(path + ".type", type_a, type_b, nullptr, "");
     for_each_key(a, b, [&](const std::string& key, const Json* in_a, const Json* in_b) {

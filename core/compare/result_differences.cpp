@@ -19,21 +19,16 @@ using Json = nlohmann::ordered_json;
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-const Json* find(const Json& table, const std::string& key) {
-  const auto found = table.is_object() ? table.find(key) : table.end();
-  return found != table.end() ? &*found : nullptr;
-}
-
 double number_of(const Json* value) { return value != nullptr && value->is_number() ? value->get<double>() : unknown; }
 
-double number_at(const Json& table, const char* key) { return number_of(find(table, key)); }
+double number_at(const Json& table, const char* key) { return number_of(find_key(table, key)); }
 
 /// Every number that one of two tables has, a null included.
 std::vector<NumberDifference> numbers_of(const Json& a, const Json& b) {
   std::vector<NumberDifference> out;
   const auto numeric = [](const Json* value) { return value != nullptr && (value->is_number() || value->is_null()); };
   const auto add = [&](const std::string& key) {
-    const Json *in_a = find(a, key), *in_b = find(b, key);
+    const Json *in_a = find_key(a, key), *in_b = find_key(b, key);
     const double one = number_of(in_a), other = number_of(in_b);
     const bool known = std::isfinite(one) || std::isfinite(other);
     if (known && (in_a == nullptr || numeric(in_a)) && (in_b == nullptr || numeric(in_b))) {
@@ -70,7 +65,7 @@ class Forces {
     }
     for (const Json& support : document["supports"]) {
       at("support of " + text_of(support, "on") + ", " + text_of(support, "end") + " end") =
-          magnitude(find(support, "force_N"));
+          magnitude(find_key(support, "force_N"));
     }
   }
   std::vector<NumberDifference> all;
@@ -156,7 +151,7 @@ std::vector<NumberDifference> chosen(const Json& a, const Json& b, std::initiali
 }
 
 Json table_at(const Json& parent, const char* key) {
-  const Json* found = find(parent, key);
+  const Json* found = find_key(parent, key);
   return found != nullptr && found->is_object() ? *found : Json::object();
 }
 

@@ -12,9 +12,14 @@ std::string shown(const Json& value) {
   return text.size() > longest ? text.substr(0, longest) + "…" : text;
 }
 
-std::string text_of(const Json& table, const char* key) {
+const Json* find_key(const Json& table, const std::string& key) {
   const auto found = table.find(key);
-  return found != table.end() && found->is_string() ? found->get<std::string>() : "";
+  return found != table.end() ? &*found : nullptr;
+}
+
+std::string text_of(const Json& table, const char* key) {
+  const Json* found = find_key(table, key);
+  return found != nullptr && found->is_string() ? found->get<std::string>() : "";
 }
 
 std::string problem_of(const Json::exception& error) {

@@ -13,6 +13,9 @@ inline constexpr const char* name_a_written_file = "name a file that was written
 /// What stands there, short enough for a message.
 std::string shown(const nlohmann::ordered_json& value);
 
+/// The value under a key; null where this is no table, or has no such key.
+const nlohmann::ordered_json* find_key(const nlohmann::ordered_json& table, const std::string& key);
+
 /// The text under a key; "" where there is none.
 std::string text_of(const nlohmann::ordered_json& table, const char* key);
 
