@@ -3,13 +3,14 @@
 #include <cstdio>
 
 #include "apps/compare_report.hpp"
+#include "apps/number_table.hpp"
 #include "apps/shell.hpp"
 
 namespace bowstring::apps {
 
 namespace {
 
-constexpr int name_width = 42, number_width = 15, value_width = 26;
+constexpr int path_width = 42, value_width = 26;
 
 /// Letters of a text, each with the bytes that it is made of.
 std::vector<std::string> letters_of(const std::string& text) {
@@ -47,8 +48,6 @@ std::pair<std::string, std::string> excerpts(const std::string& a, const std::st
   return {cut(one, std::min(begin, one.size())), cut(other, std::min(begin, other.size()))};
 }
 
-void print_row(const std::string& row) { std::printf("%s\n", row.substr(0, row.find_last_not_of(' ') + 1).c_str()); }
-
 void print_composition(const CompareReport& report) {
   const auto& differences = report.questions.composition;
   if (differences.empty()) {
@@ -57,17 +56,17 @@ void print_composition(const CompareReport& report) {
   }
   int column = width("composition") - 2;
   for (const CompositionDifference& one : differences) column = std::max(column, width(one.path) + 2);
-  column = std::min(column, name_width);
-  print_row(padded("composition", column + 4) + padded("A", value_width + 2) + "B");
+  column = std::min(column, path_width);
+  print_row(stdout, padded("composition", column + 4) + padded("A", value_width + 2) + "B");
   for (const CompositionDifference& one : differences) {
     const std::string indent = one.because_of.empty() ? "  " : "    ";
     const auto [a, b] = excerpts(one.a.value_or("(none)"), one.b.value_or("(none)"));
     std::string name = indent + one.path;
     if (width(name) > column + 2) {
-      print_row(name);
+      print_row(stdout, name);
       name.clear();
     }
-    print_row(padded(name, column + 4) + padded(a, value_width + 2) + b);
+    print_row(stdout, padded(name, column + 4) + padded(a, value_width + 2) + b);
   }
 }
 
@@ -81,49 +80,37 @@ void print_provenance(const CompareReport& report) {
   for (const std::string& difference : report.questions.provenance) std::printf("  %s\n", difference.c_str());
 }
 
-std::string shown(double value, int digits) { return std::isfinite(value) ? number(value, digits) : "unknown"; }
-
 void print_numbers(const std::string& heading, const std::vector<NumberDifference>& numbers) {
-  if (numbers.empty()) return;
-  print_row(padded(heading, name_width + 2) + padded_left("A", number_width) + padded_left("B", number_width) +
-            padded_left("B − A", number_width - 2) + padded_left("relative", number_width - 4));
-  for (const NumberDifference& one : numbers) {
-    const bool known = std::isfinite(one.absolute());
-    const bool same = known && one.absolute() == 0.0;
-    const std::string absolute = same ? "same" : known ? number(one.absolute(), 3) : "";
-    const std::string relative = same || !std::isfinite(one.relative()) ? "" : number(one.relative(), 2);
-    print_row(padded("  " + one.path, name_width + 2) + padded_left(shown(one.a, 8), number_width) +
-              padded_left(shown(one.b, 8), number_width) + padded_left(absolute, number_width - 2) +
-              padded_left(relative, number_width - 4));
-  }
+  print_number_table(stdout, heading, {"A", "B", "B − A"}, numbers);
 }
 
 void print_curves(const std::vector<CurveDifference>& curves) {
   if (curves.empty()) return;
-  print_row(padded("distance between the curves", name_width + 2) + padded_left("nodes", number_width) +
-            padded_left("mean", number_width) + padded_left("largest", number_width - 2) +
-            padded_left("at share", number_width - 4));
+  print_row(stdout, padded("distance between the curves", name_width) + padded_left("nodes", number_width) +
+                        padded_left("mean", number_width) + padded_left("largest", difference_width) +
+                        padded_left("at share", relative_width));
   for (const CurveDifference& one : curves) {
-    const std::string name = padded("  " + one.name, name_width + 2);
+    const std::string name = padded("  " + one.name, name_width);
     if (!one.unknown.empty()) {
-      print_row(name + "  " + one.unknown);
+      print_row(stdout, name + "  " + one.unknown);
       continue;
     }
     std::string nodes = std::to_string(one.nodes_a);
     if (one.nodes_a != one.nodes_b) nodes += " and " + std::to_string(one.nodes_b);
     const bool same = one.largest == 0.0;
-    print_row(name + padded_left(nodes, number_width) +
-              padded_left(same ? "same" : number(one.mean, 3) + " mm", number_width) +
-              padded_left(same ? "" : number(one.largest, 3) + " mm", number_width - 2) +
-              padded_left(same ? "" : number(one.largest_share, 2), number_width - 4));
+    print_row(stdout, name + padded_left(nodes, number_width) +
+                          padded_left(same ? "same" : number(one.mean, 3) + " mm", number_width) +
+                          padded_left(same ? "" : number(one.largest, 3) + " mm", difference_width) +
+                          padded_left(same ? "" : number(one.largest_share, 2), relative_width));
   }
 }
 
 void print_seconds(const std::vector<NumberDifference>& seconds) {
   for (const NumberDifference& one : seconds) {
     const std::string ratio = one.a > 0.0 && std::isfinite(one.b) ? "× " + number(one.b / one.a, 3) : "";
-    print_row(padded("  " + one.path + ", ms", name_width + 2) + padded_left(shown(1e3 * one.a, 3), number_width) +
-              padded_left(shown(1e3 * one.b, 3), number_width) + padded_left(ratio, number_width - 2));
+    print_row(stdout,
+              padded("  " + one.path + ", ms", name_width) + padded_left(known_number(1e3 * one.a, 3), number_width) +
+                  padded_left(known_number(1e3 * one.b, 3), number_width) + padded_left(ratio, difference_width));
   }
 }
 

@@ -1,8 +1,8 @@
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
 #include "apps/given_file.hpp"
+#include "apps/number_table.hpp"
 #include "apps/outputs.hpp"
 #include "apps/shell.hpp"
 #include "apps/watched_run.hpp"
@@ -45,18 +45,8 @@ int refuse(const std::string& file, const Rerun& plan) {
 }
 
 void print_largest(std::FILE* to, const BitComparison& bits) {
-  const std::vector<NumberDifference> largest = largest_differences(bits, most_differences);
-  const auto shown = [](double value, int digits) { return std::isfinite(value) ? number(value, digits) : "unknown"; };
-  if (!largest.empty()) {
-    std::fprintf(to, "%s%s%s%s%s\n", padded("largest differences", 44).c_str(), padded_left("then", 15).c_str(),
-                 padded_left("here", 15).c_str(), padded_left("here − then", 13).c_str(),
-                 padded_left("relative", 11).c_str());
-  }
-  for (const NumberDifference& one : largest) {
-    std::fprintf(to, "%s%s%s%s%s\n", padded("  " + one.path, 44).c_str(), padded_left(shown(one.a, 8), 15).c_str(),
-                 padded_left(shown(one.b, 8), 15).c_str(), padded_left(shown(one.absolute(), 3), 13).c_str(),
-                 padded_left(std::isfinite(one.relative()) ? number(one.relative(), 2) : "", 11).c_str());
-  }
+  print_number_table(to, "largest differences", {"then", "here", "here − then"},
+                     largest_differences(bits, most_differences));
   for (const std::string& other : bits.otherwise) std::fprintf(to, "  %s\n", other.c_str());
 }
 
