@@ -16,15 +16,6 @@ using Json = nlohmann::json;
 
 Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// Characters on a terminal: bytes that begin one.
-int width(const std::string& text) {
-  return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-std::string padded(const std::string& text, int columns) {
-  return text + std::string(static_cast<std::size_t>(std::max(0, columns - width(text))), ' ');
-}
-
 void print_lines(const char* heading, const std::vector<CheckLine>& lines) {
   std::printf("%s\n", heading);
   int subject = 0, what = 0;
@@ -144,16 +135,12 @@ int check(const CommonOptions& common, const CheckCommandOptions& options) {
   } else {
     print_report(*session, found);
   }
-  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  const int code = flushed(found.verdict() == CheckVerdict::failed ? exit_fell_short : exit_converged);
   for (const std::string& warning : session->composition.warnings) {
     std::fprintf(stderr, "warning: %s\n", warning.c_str());
   }
   for (const std::string& warning : session->scene->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  if (!written) {
-    complain("stdout cannot be written");
-    return exit_fell_short;
-  }
-  return found.verdict() == CheckVerdict::failed ? exit_fell_short : exit_converged;
+  return code;
 }
 
 }  // namespace bowstring::apps

@@ -40,10 +40,24 @@ struct StudyOptions {
   bool reduced = false, check = false;
 };
 
+struct CompareOptions {
+  std::string a, b;
+  bool json = false;
+};
+
+struct RerunOptions {
+  std::string file;
+  bool force = false;
+  std::optional<std::string> out;
+  bool json = false;
+};
+
 int solve(const CommonOptions& common, const SolveOptions& options);
 int explain(const CommonOptions& common, const std::string& file, const std::vector<std::string>& set);
 int check(const CommonOptions& common, const CheckCommandOptions& options);
 int study(const CommonOptions& common, const StudyOptions& options);
+int compare(const CommonOptions& common, const CompareOptions& options);
+int rerun(const CommonOptions& common, const RerunOptions& options);
 /// `kind` "" for all.
 int list_plugins(const CommonOptions& common, const std::string& kind, bool json);
 /// `what`: "kind/name".

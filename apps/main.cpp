@@ -62,6 +62,26 @@ int main(int argc, char** argv) {
   study_command->add_flag("--check", study_options.check, "solve nothing: read all that is there and verify it");
   plugin_path(study_command);
 
+  CompareOptions compare_options;
+  CLI::App* compare_command =
+      app.add_subcommand("compare", "say in what two compositions or results differ, and what that did");
+  compare_command->add_option("A", compare_options.a, "composition (TOML) or result document (JSON, also in gzip)")
+      ->required();
+  compare_command->add_option("B", compare_options.b, "the same")->required();
+  compare_command->add_flag("--json", compare_options.json,
+                            "print the differences as JSON, and nothing else, on stdout");
+  plugin_path(compare_command);
+
+  RerunOptions rerun_options;
+  CLI::App* rerun_command =
+      app.add_subcommand("rerun", "solve again what a result document holds; say whether the same bits came out");
+  rerun_command->add_option("RESULT", rerun_options.file, "result document (JSON, also in gzip)")->required();
+  rerun_command->add_flag("--force", rerun_options.force,
+                          "solve with what is here, though a plugin, the kernel or a start is not what it was");
+  rerun_command->add_option("--out", rerun_options.out, "write the new result document (JSON) to this file");
+  rerun_command->add_flag("--json", rerun_options.json, "print the new result document, and nothing else, on stdout");
+  plugin_path(rerun_command);
+
   std::string kind;
   bool plugins_json = false;
   CLI::App* plugins_command = app.add_subcommand("plugins", "list what is installed");
@@ -85,6 +105,8 @@ int main(int argc, char** argv) {
   if (explain_command->parsed()) return explain(common, explain_file, explain_set);
   if (check_command->parsed()) return check(common, check_options);
   if (study_command->parsed()) return study(common, study_options);
+  if (compare_command->parsed()) return compare(common, compare_options);
+  if (rerun_command->parsed()) return rerun(common, rerun_options);
   if (plugins_command->parsed()) return list_plugins(common, kind, plugins_json);
   return describe(common, what, describe_json);
 }

@@ -1,8 +1,16 @@
 #include "apps/shell.hpp"
 
+#include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace bowstring::apps {
+
+PluginHostOptions host_options(const CommonOptions& common, const CompositionRequest& request) {
+  PluginHostOptions options = plugin_search(composition_plugin_path(request));
+  options.command_line_path = common.plugin_path;
+  return options;
+}
 
 PluginHost make_host(const CommonOptions& common, const std::string& composition_file) {
   return make_host(common, std::vector<std::string>{composition_file});
@@ -13,8 +21,9 @@ PluginHost make_host(const CommonOptions& common, const std::vector<std::string>
   options.command_line_path = common.plugin_path;
   for (const std::string& file : composition_files) {
     if (file.empty()) continue;
-    for (std::string& folder : composition_plugin_path({file, {}}))
+    for (std::string& folder : composition_plugin_path({file, {}})) {
       options.composition_path.push_back(std::move(folder));
+    }
   }
   return PluginHost(options);
 }
@@ -49,6 +58,26 @@ std::string number(double value, int digits) {
 
 std::string counted(int count, const std::string& singular) {
   return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
+int width(const std::string& text) {
+  constexpr unsigned continued = 0x80U, mask = 0xC0U;  // UTF-8: bytes that begin no character
+  return static_cast<int>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned>(c) & mask) != continued; }));
+}
+
+std::string padded(const std::string& text, int columns) {
+  return text + std::string(static_cast<std::size_t>(std::max(0, columns - width(text))), ' ');
+}
+
+std::string padded_left(const std::string& text, int columns) {
+  return std::string(static_cast<std::size_t>(std::max(0, columns - width(text))), ' ') + text;
+}
+
+int flushed(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  complain("stdout cannot be written");
+  return exit_fell_short;
 }
 
 }  // namespace bowstring::apps

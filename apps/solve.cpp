@@ -1,13 +1,10 @@
-#include <atomic>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <optional>
 
-#include <unistd.h>
-
 #include "apps/outputs.hpp"
 #include "apps/shell.hpp"
+#include "apps/watched_run.hpp"
 #include "core/procedure/procedure.hpp"
 #include "core/procedure/summary.hpp"
 #include "core/result/document.hpp"
@@ -15,29 +12,6 @@
 namespace bowstring::apps {
 
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-extern "C" void on_interrupt(int) { interrupted.store(true); }
-
-/// One line that is drawn over and over on a terminal; silent elsewhere.
-class Progress {
- public:
-  bool operator()(const IterationRecord& record) {
-    if (terminal_) {
-      std::fprintf(stderr, "\r\033[Kiteration %3d   energy %.6g N mm   stationarity %.1e N   rows %.1e mm   step %.2g",
-                   record.iteration, record.energy, record.stationarity, record.penetration, record.step);
-      std::fflush(stderr);
-    }
-    return !interrupted.load();
-  }
-  void finish() const {
-    if (terminal_) std::fprintf(stderr, "\r\033[K");
-  }
-
- private:
-  bool terminal_ = ::isatty(STDERR_FILENO) != 0;
-};
 
 void line(const char* label, const std::optional<double>& value, const char* unit) {
   if (value && std::isfinite(*value)) std::printf("  %-26s %12s %s\n", label, number(*value, 6).c_str(), unit);
@@ -130,12 +104,7 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
   if (procedure == nullptr) return report(refusal);
   if (const int code = outputs.spare(procedure->input_files()); code != exit_converged) return code;
 
-  std::signal(SIGINT, on_interrupt);
-  Progress progress;
-  const std::vector<StateResult> states = procedure->run(std::ref(progress));
-  progress.finish();
-  std::signal(SIGINT, SIG_DFL);
-
+  const std::vector<StateResult> states = run_watched(*procedure);
   const StateResult& result = states.back();
   if (!result.readable.ok()) complain(result.readable.text);
   const std::string document = result_document(states);
@@ -150,11 +119,7 @@ int solve(const CommonOptions& common, const SolveOptions& options) {
   }
   for (const std::string& warning : result.solution.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (written != exit_converged) return written;
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    complain("stdout cannot be written");
-    return exit_fell_short;
-  }
-  return result.solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short;
+  return flushed(result.solution.certificate.verdict == Verdict::converged ? exit_converged : exit_fell_short);
 }
 
 }  // namespace bowstring::apps

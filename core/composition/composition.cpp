@@ -72,6 +72,20 @@ void add_paths(const ParameterSet& parameters, std::vector<std::string>& out) {
   }
 }
 
+/// Fills in what each step changes. What is wrong with a later step is told by whoever reads it for that step.
+void resolve_steps(const CompositionRequest& request, Registry& registry, Composition& composition) {
+  std::string before = composition.resolved_json;
+  for (std::size_t k = 1; k < composition.steps.size(); ++k) {
+    CompositionRequest later = request;
+    later.step = static_cast<int>(k);
+    later.from_memory = true;
+    CompositionOutcome outcome = load_composition(later, registry);
+    if (!outcome.composition) return;
+    composition.steps[k].tables = differing_tables(outcome.composition->resolved_json, before);
+    before = std::move(outcome.composition->resolved_json);
+  }
+}
+
 }  // namespace
 
 std::vector<const ComponentChoice*> components_of(const Composition& composition) {
@@ -108,10 +122,15 @@ CompositionOutcome load_composition(const CompositionRequest& request, Registry&
     composition.file = request.file;
     composition.input_files = sources->files;
     composition.steps = sources->steps;
+    composition.step = request.step;
     for (std::string& file : data_files_of(composition)) composition.input_files.push_back(std::move(file));
     composition.plugin_path = sources->plugin_path;
     if (report.empty() && outcome.plugin_failure.ok()) {
       composition.resolved_json = resolved_json(composition);
+      if (composition.step == 0 && composition.steps.size() > 1) {
+        resolve_steps(request, registry, composition);
+        composition.resolved_json = resolved_json(composition);
+      }
       composition.without_effect = without_effect(sources->root, composition);
       outcome.composition = std::move(composition);
     }

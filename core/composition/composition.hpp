@@ -143,6 +143,8 @@ struct StepTable {
   std::string name;               ///< or its number, from 1
   bool rest_is_previous = false;  ///< the state before becomes the rest state of vessels; else that stays State 1
   std::string position;
+  /// The resolved tables in which its composition differs from that of the step before, JSON text; "": none.
+  std::string tables = "";
 };
 
 /// A checked, resolved composition: every reference holds, every number is in mm, N, rad.
@@ -163,6 +165,7 @@ struct Composition {
   ContinuationTable continuation;
   MultistartTable multistart;
   std::vector<StepTable> steps;          ///< all of them, whichever this composition is read for
+  int step = 0;                          ///< the one that it is read for
   std::vector<std::string> plugin_path;  ///< absolute
   std::string resolved_json;             ///< everything above with defaults filled in, as the result document holds it
   std::vector<std::string> warnings;

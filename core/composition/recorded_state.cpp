@@ -6,28 +6,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/composition/json_words.hpp"
 #include "core/composition/sha256.hpp"
 
 namespace bowstring {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr const char* written_by_solve = "a result document, as `bowstring solve --out` writes it";
-
-/// What stands there, short enough for a message.
-std::string shown(const Json& value) {
-  if (value.is_object()) return "a table";
-  if (value.is_array()) return "a list";
-  constexpr std::size_t longest = 60;
-  const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  return text.size() > longest ? text.substr(0, longest) + "…" : text;
-}
-
-std::string text_of(const Json& table, const char* key) {
-  const auto found = table.find(key);
-  return found != table.end() && found->is_string() ? found->get<std::string>() : "";
-}
 
 /// A list of numbers, or of lists of them, one after the other; what is none is not a number.
 void add_numbers(const Json& value, std::vector<double>& out) {
@@ -93,7 +78,7 @@ class StateReader {
   bool has_format() {
     const auto format = document_.is_object() ? document_.find("format") : document_.end();
     if (format == document_.end()) {
-      flaw("has no 'format'", written_by_solve, "name a file that was written with --out");
+      flaw("has no 'format'", written_by_solve, name_a_written_file);
       return false;
     }
     if (*format == result_format) return true;
@@ -106,7 +91,7 @@ class StateReader {
     const auto found = parent.find(key);
     if (found != parent.end() && found->is_object()) return &*found;
     flaw((found == parent.end() ? "has no '" + path + key + "'" : "has " + shown(*found) + " as '" + path + key + "'"),
-         "a table of numbers by name", "name a file that was written with --out");
+         "a table of numbers by name", name_a_written_file);
     return nullptr;
   }
 
@@ -116,7 +101,7 @@ class StateReader {
       NamedNumbers numbers;
       numbers.name = name;
       if (!list.is_array()) {
-        flaw("has " + shown(list) + " as " + owner, "a list of numbers", "name a file that was written with --out");
+        flaw("has " + shown(list) + " as " + owner, "a list of numbers", name_a_written_file);
         continue;
       }
       for (const Json& entry : list) {
@@ -223,9 +208,7 @@ RecordedState read_recorded_state(const std::string& text, const std::string& na
   try {
     document = Json::parse(text);
   } catch (const Json::exception& error) {
-    std::string why = error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: …"
-    if (const std::size_t bracket = why.find("] "); bracket != std::string::npos) why.erase(0, bracket + 2);
-    flaws.push_back({name + " is no JSON (" + why + ")", written_by_solve, "name a file that was written with --out"});
+    flaws.push_back({name + " is no JSON (" + problem_of(error) + ")", written_by_solve, name_a_written_file});
     return {};
   }
   RecordedState out = StateReader(document, name, flaws).read();

@@ -4,8 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "core/composition/keys.hpp"
 #include "core/composition/numbers.hpp"
 #include "core/composition/profiles.hpp"
+#include "core/composition/vocabulary.hpp"
 
 namespace bowstring {
 namespace {
@@ -212,7 +214,31 @@ Json multistart_json(const MultistartTable& table) {
   return out;
 }
 
+Json steps_json(const std::vector<StepTable>& steps) {
+  Json out = Json::array();
+  for (const StepTable& step : steps) {
+    Json table = {{"name", step.name}};
+    if (step.rest_is_previous && !out.empty()) table["rest"] = "previous";
+    if (!step.tables.empty()) table.update(Json::parse(step.tables));
+    out.push_back(std::move(table));
+  }
+  return out;
+}
+
+std::string written(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 }  // namespace
+
+std::string differing_tables(const std::string& resolved, const std::string& before) {
+  const Json now = Json::parse(resolved), then = Json::parse(before);
+  Json out = Json::object();
+  for (const auto& [key, value] : now.items()) {
+    const auto same = then.find(key);
+    const bool differs = same == then.end() || *same != value;
+    if (differs && key != "start" && contains_name(overridable_names(), key)) out[key] = value;
+  }
+  return out.empty() ? "" : written(out);
+}
 
 std::string resolved_json(const Composition& composition) {
   Json root;
@@ -237,7 +263,8 @@ std::string resolved_json(const Composition& composition) {
   }
   if (composition.continuation.given) root["continuation"] = continuation_json(composition.continuation);
   if (composition.multistart.given) root["multistart"] = multistart_json(composition.multistart);
-  return root.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (composition.step == 0 && !composition.steps.empty()) root["step"] = steps_json(composition.steps);
+  return written(root);
 }
 
 }  // namespace bowstring

@@ -44,23 +44,6 @@ Span<const ParameterDeclaration> continuation_schema() {
   return {schema, std::size(schema)};
 }
 
-Span<const ParameterDeclaration> multistart_schema() {
-  using Type = ParameterType;
-  static const ParameterDeclaration schema[] = {
-      declare("starts", Type::integer, "", "8", "how many starts, the first one unperturbed", 1.0, 1e6),
-      declare("seed", Type::integer, "", "1", "of the perturbations", 0.0),
-      declare("perturbation", Type::scalar, "mm", "",
-              "root-mean-square displacement of a start's nodes; default a tenth of the smallest clearance, without "
-              "contact a hundredth of a curve's length",
-              0.0, unbounded, true),
-      declare("mirrored", Type::flag, "", "true", "every second start is the mirror image of the one before it"),
-      declare("distance", Type::scalar, "mm", "1e-3",
-              "equilibria are one where no node of theirs is farther apart than this", 0.0, unbounded, true),
-      declare("saddles", Type::flag, "", "true", "look for the saddle between each two neighbouring minima"),
-  };
-  return {schema, std::size(schema)};
-}
-
 const Node* table_of(const Node& root, const char* name, const std::string& mend, Report& report) {
   const Entry* entry = root.find(name);
   if (entry == nullptr) return nullptr;
@@ -84,6 +67,23 @@ void lay_step(Node& root, const Node& step, Report& report) {
 }
 
 }  // namespace
+
+Span<const ParameterDeclaration> multistart_schema() {
+  using Type = ParameterType;
+  static const ParameterDeclaration schema[] = {
+      declare("starts", Type::integer, "", "8", "how many starts, the first one unperturbed", 1.0, 1e6),
+      declare("seed", Type::integer, "", "1", "of the perturbations", 0.0),
+      declare("perturbation", Type::scalar, "mm", "",
+              "root-mean-square displacement of a start's nodes; default a tenth of the smallest clearance, without "
+              "contact a hundredth of a curve's length",
+              0.0, unbounded, true),
+      declare("mirrored", Type::flag, "", "true", "every second start is the mirror image of the one before it"),
+      declare("distance", Type::scalar, "mm", "1e-3",
+              "equilibria are one where no node of theirs is farther apart than this", 0.0, unbounded, true),
+      declare("saddles", Type::flag, "", "true", "look for the saddle between each two neighbouring minima"),
+  };
+  return {schema, std::size(schema)};
+}
 
 ContinuationTable read_continuation(const Node& root, Report& report) {
   ContinuationTable out;
@@ -207,12 +207,18 @@ void apply_steps(Node& root, int last, Report& report) {
   // What is wrong with the paths of later steps is told with the rest.
   Node later = root;
   for (std::size_t k = static_cast<std::size_t>(last) + 1; k < steps.size(); ++k) lay_step(later, steps[k], report);
-  if (last <= 0 || last >= static_cast<int>(steps.size())) return;
+  if (last < 0 || last >= static_cast<int>(steps.size())) return;
+  const Entry* rest = steps[static_cast<std::size_t>(last)].find("rest");
+  if (last == 0) {
+    Entry* start = root.find("start");
+    if (rest != nullptr && start != nullptr && start->value.is_table()) start->value.set(*rest);
+    return;
+  }
   root.erase("start");  // a step begins where the one before it ended
-  if (const Entry* rest = steps[static_cast<std::size_t>(last)].find("rest")) {
+  if (rest != nullptr) {
     Node start;
     start.position = rest->position;
-    start.set({"rest", rest->position, rest->value});
+    start.set(*rest);
     root.set({"start", rest->position, std::move(start)});
   }
 }

@@ -11,6 +11,8 @@ ContinuationTable read_continuation(const Node& root, Report& report);
 
 /// [multistart]; `given` is false without the table.
 MultistartTable read_multistart(const Node& root, Report& report);
+/// What [multistart] takes.
+Span<const ParameterDeclaration> multistart_schema();
 
 /// The names of every [[step]] in order, and what each says beyond its overrides.
 std::vector<StepTable> read_steps(const Node& root, Report& report);

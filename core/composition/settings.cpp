@@ -17,20 +17,6 @@ ParameterDeclaration threshold(const char* key, const char* unit, const char* de
   return declaration;
 }
 
-Span<const ParameterDeclaration> certificate_schema() {
-  constexpr double unbounded = 1e308;
-  static const ParameterDeclaration schema[] = {
-      threshold("stationarity", "N", "1e-6", "largest admissible stationarity", 0.0, unbounded),
-      threshold("penetration", "mm", "1e-8", "largest admissible violation of a row", 0.0, unbounded),
-      threshold("complementarity", "N mm", "1e-8", "largest admissible complementarity", 0.0, unbounded),
-      threshold("multiplier", "N", "-1e-8", "smallest admissible multiplier", -unbounded, 0.0),
-      threshold("minimum-stretch", "", "0.2", "an edge at or below this stretch ratio counts as folded", 0.0, 1.0),
-      {"require", ParameterType::choice, "", "\"none\"", "what `converged` demands beyond the thresholds", -1e308,
-       1e308, false, false, "none|minimum"},
-  };
-  return {schema, std::size(schema)};
-}
-
 ComponentChoice read_setting(const Node& root, Kind kind, const char* default_type, Reading& reading) {
   const std::string name = kind_name(kind);
   ComponentUse use;
@@ -52,6 +38,20 @@ ComponentChoice read_setting(const Node& root, Kind kind, const char* default_ty
 }
 
 }  // namespace
+
+Span<const ParameterDeclaration> certificate_schema() {
+  constexpr double unbounded = 1e308;
+  static const ParameterDeclaration schema[] = {
+      threshold("stationarity", "N", "1e-6", "largest admissible stationarity", 0.0, unbounded),
+      threshold("penetration", "mm", "1e-8", "largest admissible violation of a row", 0.0, unbounded),
+      threshold("complementarity", "N mm", "1e-8", "largest admissible complementarity", 0.0, unbounded),
+      threshold("multiplier", "N", "-1e-8", "smallest admissible multiplier", -unbounded, 0.0),
+      threshold("minimum-stretch", "", "0.2", "an edge at or below this stretch ratio counts as folded", 0.0, 1.0),
+      {"require", ParameterType::choice, "", "\"none\"", "what `converged` demands beyond the thresholds", -1e308,
+       1e308, false, false, "none|minimum"},
+  };
+  return {schema, std::size(schema)};
+}
 
 int read_dimension(const Node& root, Report& report) {
   const Entry* scene = root.find("scene");

@@ -16,5 +16,7 @@ ComponentChoice read_enforcement(const Node& root, Reading& reading);
 ComponentChoice read_solver(const Node& root, Reading& reading);
 
 CertificateTable read_certificate(const Node& root, Report& report);
+/// What [certificate] takes.
+Span<const ParameterDeclaration> certificate_schema();
 
 }  // namespace bowstring

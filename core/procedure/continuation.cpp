@@ -131,10 +131,8 @@ class Walk {
     found.multipliers = state.multipliers;
     found.iterations = state.iterations;
     std::vector<std::string> warnings = std::move(solution_.warnings);
-    const std::optional<StartOrigin> origin = solution_.start;
     solution_ = certified(session(), std::move(found));
     solution_.warnings = std::move(warnings);
-    solution_.start = origin;
     share_ = state.share;
     add_point(arclength, by_solver);
   }

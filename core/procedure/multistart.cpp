@@ -310,9 +310,7 @@ class Search {
     }
     if (!table_.seed_given) told_.push_back("[multistart] has no seed; 1 was taken");
     if (lowest < found_.size()) {
-      std::optional<StartOrigin> origin = solution_.start;
       solution_ = solutions_[lowest];
-      if (found_[lowest].origin == "start 1") solution_.start = std::move(origin);
       bind_anew(session_, solution_.q);
       session_.assembly->accept(solution_.q);
     }

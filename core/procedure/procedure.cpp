@@ -99,6 +99,9 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
                                    const std::function<bool(const IterationRecord&)>& progress) const {
   const auto begin = std::chrono::steady_clock::now();
   StateResult out;
+  const std::string asked = session->composition.resolved_json;
+  std::optional<StartOrigin> start;
+  if (!session->start.q.empty()) start = session->start.origin;
   const ContinuationTable table = session->composition.continuation;
   const MultistartTable multistart = session->composition.multistart;
   const auto build = [&](const CompositionRequest& walked, Refusal& refusal) {
@@ -133,6 +136,7 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
     find_equilibria(*solved.session, multistart, watched, solved.solution, out.equilibria);
   }
   out.readable = read_solution(*solved.session, solved.solution, out.readings);
+  if (solved.session->composition.resolved_json != asked) out.path.asked_composition = asked;
   out.session = record_of(*solved.session, provenance_json(provenance_of(solved.session->composition, registry_)));
   if (table.given || multistart.given) {
     // Of all solves, not of the last one.
@@ -142,6 +146,7 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
   }
   out.input_files = solved.session->composition.input_files;
   out.solution = std::move(solved.solution);
+  out.solution.start = std::move(start);  // of what was asked, not of a solve that was one of many
   return out;
 }
 

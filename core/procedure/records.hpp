@@ -43,6 +43,8 @@ struct Path {
   bool list = false;  ///< the value is a list of numbers
   bool reached = false;
   std::string reason;  ///< why not
+  /// What was asked for, resolved, where the walk has left its composition with another value; "": it has not.
+  std::string asked_composition;
   std::vector<PathPoint> points;
   std::vector<CriticalPoint> critical;
 };

@@ -294,6 +294,7 @@ Json continuation(const Path& path) {
           {"unit", path.unit},
           {"reached", path.reached},
           {"reason", path.reason.empty() ? Json(nullptr) : Json(path.reason)},
+          {"asked_composition", path.asked_composition.empty() ? Json(nullptr) : Json::parse(path.asked_composition)},
           {"critical_points", std::move(critical)}};
 }
 

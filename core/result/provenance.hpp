@@ -33,4 +33,20 @@ Provenance provenance_of(const Composition& composition, const Registry& registr
 /// `provenance` of a result document as JSON text.
 std::string provenance_json(const Provenance& provenance);
 
+/// The programs of such a text, which must be a JSON object; what it does not say is empty.
+Provenance read_provenance(const std::string& json);
+
+/// The same programs as they are here: the running kernel, and from the registry the plugins of the recorded kinds and
+/// names. One that nobody offers has no file.
+Provenance provenance_here(const Provenance& recorded, const Registry& registry);
+
+/// What the two sides of a comparison are called: "sha256 ab12… then, cd34… here".
+struct SideNames {
+  std::string first = "then", second = "here";
+};
+
+/// In what two provenances differ, each in a sentence: versions, kernel, and of each plugin that both name the file's
+/// content, its ABI, and whether there is one. Where files lie is no difference.
+std::vector<std::string> provenance_differences(const Provenance& a, const Provenance& b, const SideNames& names = {});
+
 }  // namespace bowstring

@@ -2,38 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/composition/resolved_toml.hpp"
 #include "tests/composition/workbench.hpp"
 
 using namespace bowstring;
 using test::Workbench;
 using Json = nlohmann::ordered_json;
-
-namespace {
-
-/// JSON as an inline TOML value.
-std::string toml_value(const Json& value) {
-  if (value.is_object()) {
-    std::string text;
-    for (const auto& [key, inner] : value.items()) {
-      text += (text.empty() ? "" : ", ") + Json(key).dump() + " = " + toml_value(inner);
-    }
-    return "{ " + text + " }";
-  }
-  if (value.is_array()) {
-    std::string text;
-    for (const Json& inner : value) text += (text.empty() ? "" : ", ") + toml_value(inner);
-    return "[" + text + "]";
-  }
-  return value.dump();
-}
-
-std::string toml_file(const Json& root) {
-  std::string text;
-  for (const auto& [key, value] : root.items()) text += key + " = " + toml_value(value) + "\n";
-  return text;
-}
-
-}  // namespace
 
 TEST_CASE("the resolved composition has every default, in a fixed order") {
   Workbench bench;
@@ -105,7 +79,7 @@ time-limit = "3 min"
 multiplier = "-1 mN"
 )";
   const std::string first = bench.loaded(everything).resolved_json;
-  const std::string again = bench.loaded(toml_file(Json::parse(first))).resolved_json;
+  const std::string again = bench.loaded(resolved_toml(first)).resolved_json;
   CHECK(first.size() > 1000);
   CHECK(again == first);
   CHECK(bench.loaded(everything).resolved_json == first);
