@@ -42,9 +42,15 @@ class Reader {
       return out_;
     }
     const Entry& form = *forms.front();
+    const Entry* at = table.find("at");
+    if (at != nullptr && form.key != "finest" && form.key != "richardson") {
+      fail(at->position, "[reference] has 'at' beside '" + form.key + "'", "it beside finest or richardson",
+           form.key == "stored" ? "write it into a row: stored = [{ at = { N = 80 }, peak_displacement_mm = 9.75 }]"
+                                : "remove it");
+    }
     if (form.key == "closed-form") read_closed_form(form);
     if (form.key == "stored") read_stored(form);
-    if (form.key == "finest" || form.key == "richardson") read_axis(form, table.find("at"));
+    if (form.key == "finest" || form.key == "richardson") read_axis(form, at);
     return out_;
   }
 
@@ -98,27 +104,43 @@ class Reader {
 
   void read_stored(const Entry& form) {
     out_.form = Reference::Form::stored;
-    out_.stored.resize(study_.quantities.size());
-    if (form.value.is_text()) {
-      read_document(form.value);
-      return;
-    }
     out_.text = "stored values";
-    if (!check_is_table(form.value, "'stored'", "write { peak_displacement_mm = 9.75 }, or a result document",
+    const Node& value = form.value;
+    if (value.is_text()) {
+      read_document(value);
+    } else if (value.is_list() && !value.items.empty()) {
+      for (const Node& row : value.items) read_stored_row(row);
+    } else {
+      read_stored_row(value);
+    }
+  }
+
+  /// Quantities and their values; of a part of the runs where it says `at`.
+  void read_stored_row(const Node& row) {
+    if (!check_is_table(row, "'stored'",
+                        "write { peak_displacement_mm = 9.75 }, a list of such with at = { N = 80 }, or a result "
+                        "document",
                         report_)) {
       return;
     }
-    for (const Entry& entry : form.value.entries) {
+    StoredValues values;
+    values.value.resize(study_.quantities.size());
+    for (const Entry& entry : row.entries) {
+      if (entry.key == "at") {
+        values.at = read_places(entry);
+        continue;
+      }
       const int k = quantity_called(entry);
       const bool whole = entry.value.type == Node::Type::integer;
       if (!whole && entry.value.type != Node::Type::number) {
         fail(entry.value.position, "the stored value of '" + entry.key + "' is " + description(entry.value), "a number",
              "write it in the quantity's own unit");
       } else if (k >= 0) {
-        out_.stored[static_cast<std::size_t>(k)] =
+        values.value[static_cast<std::size_t>(k)] =
             whole ? static_cast<double>(entry.value.integer) : entry.value.number;
       }
     }
+    out_.stored.push_back(std::move(values));
   }
 
   void read_document(const Node& node) {
@@ -133,14 +155,17 @@ class Reader {
       return;
     }
     const Json document = Json::parse(text, nullptr, false);
+    StoredValues values;
+    values.value.resize(study_.quantities.size());
     bool any = false;
     for (std::size_t k = 0; k < study_.quantities.size(); ++k) {
       Selection found;
       if (!follow_path(document, study_.quantities[k].path, found).empty() || found.values.size() != 1) continue;
       if (!found.values.front()->is_number()) continue;
-      out_.stored[k] = found.values.front()->get<double>();
+      values.value[k] = found.values.front()->get<double>();
       any = true;
     }
+    out_.stored.push_back(std::move(values));
     if (any) return;
     fail(node.position, "the reference '" + node.text + "' holds none of the quantities",
          "a result document, as `bowstring solve --out` writes it", "name a result of this scene");
@@ -176,17 +201,19 @@ class Reader {
     }
     out_.text = richardson ? "extrapolation over " + axis.data.name
                            : "the run with " + axis.data.name + " = " + axis.data.label[finest(axis)];
-    if (at != nullptr) read_places(*at);
+    if (at != nullptr) out_.at = read_places(*at);
     for (const auto& [a, k] : out_.at) {
       const AxisData& data = study_.axes[static_cast<std::size_t>(a)].data;
       out_.text += ", " + data.name + " = " + data.label[static_cast<std::size_t>(k)];
     }
   }
 
-  void read_places(const Entry& at) {
+  /// Axes, each at one of its alternatives.
+  std::vector<std::pair<int, int>> read_places(const Entry& at) {
+    std::vector<std::pair<int, int>> places;
     if (!check_is_table(at.value, "'at' of [reference]", "write at = { contact = \"segment-wise-contact\" }",
                         report_)) {
-      return;
+      return places;
     }
     for (const Entry& entry : at.value.entries) {
       const int a = axis_called(entry.key, entry.position);
@@ -202,9 +229,10 @@ class Reader {
         fail(entry.position, "'at' of [reference] holds '" + entry.key + "', along which the reference is looked for",
              "other axes", "remove it");
       } else {
-        out_.at.emplace_back(a, k);
+        places.emplace_back(a, k);
       }
     }
+    return places;
   }
 
   static std::size_t finest(const Axis& axis) {

@@ -37,14 +37,20 @@ struct QuantityOfInterest {
 };
 const char* reduction_name(QuantityOfInterest::Reduction reduction) noexcept;  ///< "max", "rms"; "" for none
 
+/// Values from elsewhere: of every run, or of those with the alternatives `at` these axes.
+struct StoredValues {
+  std::vector<std::pair<int, int>> at;       ///< axis, alternative
+  std::vector<std::optional<double>> value;  ///< per quantity
+};
+
 /// What results are compared with.
 struct Reference {
   enum class Form : int { none, closed_form, stored, finest, richardson };
 
   Form form = Form::none;
-  std::vector<std::string> expression;        ///< closed form, per quantity: of the axes' names; "" without
-  std::vector<std::optional<double>> stored;  ///< per quantity
-  int axis = -1;                              ///< of finest and richardson
+  std::vector<std::string> expression;  ///< closed form, per quantity: of the axes' names; "" without
+  std::vector<StoredValues> stored;     ///< the first one counts that fits a run and has the quantity
+  int axis = -1;                        ///< of finest and richardson
   std::vector<std::pair<int, int>> at;  ///< axes that are held, each at an alternative; the others are the run's own
   std::string text;                     ///< for people
   std::string position;

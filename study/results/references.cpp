@@ -56,7 +56,7 @@ class ReferenceFinder {
       case Reference::Form::none:
         return unknown;
       case Reference::Form::stored:
-        return reference_.stored[quantity].value_or(unknown);
+        return stored(quantity, data_.runs[run].choice);
       case Reference::Form::closed_form:
         return closed_form(quantity, run);
       case Reference::Form::finest:
@@ -67,6 +67,15 @@ class ReferenceFinder {
     const auto [known, fresh] = found.emplace(place, unknown);
     if (fresh) known->second = of_family(quantity, place);
     return known->second;
+  }
+
+  double stored(std::size_t quantity, const std::vector<int>& choice) const {
+    for (const StoredValues& values : reference_.stored) {
+      const bool fits = std::all_of(values.at.begin(), values.at.end(),
+                                    [&](const auto& place) { return choice[at(place.first)] == place.second; });
+      if (fits && values.value[quantity]) return *values.value[quantity];
+    }
+    return unknown;
   }
 
   double closed_form(std::size_t quantity, std::size_t run) const {
