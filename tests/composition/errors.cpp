@@ -374,7 +374,7 @@ TEST_CASE("profiles") {
   CHECK(error("wire.w.radius", "{ table = [[0, 1]], measured-from = \"top\" }") ==
         "'measured-from' of 'radius' of wire 'w' is text \"top\"; expected 'tip' or 'sheath'; write one of them");
   CHECK(error("wire.w.radius", "{ table = [[0, 1]], factor = 0 }") ==
-        "'factor' of 'radius' of wire 'w' is 0, out of bounds; expected a number, more than 0; write a larger number");
+        "'factor' of 'radius' of wire 'w' is 0, out of bounds; expected more than 0; write a larger number");
   CHECK(error("wire.w.radius", "{ column = \"a\", factor = 2 }") ==
         "'factor' of 'radius' of wire 'w' with a 'column'; expected it beside values that stand in the composition; "
         "scale the column's own numbers");
