@@ -6,7 +6,7 @@ from study_run import expect, number, run
 
 WEIGHTS = ("1e2", "1e3", "1e4", "1e5", "1e6")
 NODES = (20, 40, 80)
-STUCK = ("1e6", 40)  # a row of this mesh only just touches: the kink of its penalty is in Newton's way
+STUCK = ("1e6", 40)  # two rows hardly press on this mesh, and kinks beside them are in Newton's way
 
 
 def expect_bias(row, exact):
