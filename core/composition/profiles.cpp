@@ -24,13 +24,14 @@ class ProfileReader {
       : subject_(subject), rules_(rules), out_(out), report_(report) {}
 
   bool read(const Node& node) {
-    const bool keys_known =
-        check_keys(node, subject_, {"table", "segments", "column", "unit", "measured-from"}, "remove it", report_);
+    const bool keys_known = check_keys(
+        node, subject_, {"table", "segments", "column", "unit", "measured-from", "factor"}, "remove it", report_);
     const Entry* form = the_form(node, keys_known);
     if (form == nullptr) return false;
     const bool form_good = read_form(*form) && read_unit(node, *form);
     const bool origin_good = read_origin(node, form->key == "table");
-    return keys_known && form_good && origin_good;
+    const bool factor_good = read_factor(node, form->key == "column");
+    return keys_known && form_good && origin_good && factor_good;
   }
 
  private:
@@ -162,6 +163,23 @@ class ProfileReader {
     if (name == "tip" || name == "sheath") return true;
     return fail(origin->value, "'measured-from' of " + subject_ + " is " + description(origin->value),
                 "'tip' or 'sheath'", "write one of them");
+  }
+
+  /// What lets one number vary a whole profile, as sweeps and samples need it.
+  bool read_factor(const Node& node, bool is_column) {
+    const Entry* entry = node.find("factor");
+    if (entry == nullptr) return true;
+    if (is_column) {
+      return fail(entry->value, "'factor' of " + subject_ + " with a 'column'",
+                  "it beside values that stand in the composition", "scale the column's own numbers");
+    }
+    NumberRules above_zero;
+    above_zero.lower = 0.0;
+    above_zero.lower_exclusive = true;
+    const std::optional<Number> factor = read_number(entry->value, "'factor' of " + subject_, above_zero, report_);
+    if (!factor) return false;
+    for (double& value : out_.profile.value) value *= factor->value;
+    return true;
   }
 
   const std::string& subject_;

@@ -355,9 +355,8 @@ TEST_CASE("profiles") {
     return all[0].substr(("--set " + path + "=" + value + ": ").size());
   };
   CHECK(error("wire.w.radius", "{ colum = \"r\" }") ==
-        "unknown key 'colum' in 'radius' of wire 'w'; expected one of: table, segments, column, unit, measured-from; "
-        "did you "
-        "mean 'column'?");
+        "unknown key 'colum' in 'radius' of wire 'w'; expected one of: table, segments, column, unit, measured-from, "
+        "factor; did you mean 'column'?");
   CHECK(error("wire.w.radius", "{}") ==
         "'radius' of wire 'w' has none of 'table', 'segments' and 'column'; expected exactly one of them; write a "
         "value, or a table with one of these keys");
@@ -374,6 +373,11 @@ TEST_CASE("profiles") {
         "'measured-from' of 'radius' of wire 'w' without a 'table'; expected it beside arc lengths only; remove it");
   CHECK(error("wire.w.radius", "{ table = [[0, 1]], measured-from = \"top\" }") ==
         "'measured-from' of 'radius' of wire 'w' is text \"top\"; expected 'tip' or 'sheath'; write one of them");
+  CHECK(error("wire.w.radius", "{ table = [[0, 1]], factor = 0 }") ==
+        "'factor' of 'radius' of wire 'w' is 0, out of bounds; expected more than 0; write a larger number");
+  CHECK(error("wire.w.radius", "{ column = \"a\", factor = 2 }") ==
+        "'factor' of 'radius' of wire 'w' with a 'column'; expected it beside values that stand in the composition; "
+        "scale the column's own numbers");
   CHECK(error("wire.w.radius", "{ segments = {}, column = \"a\" }") ==
         "'radius' of wire 'w' has more than one of 'table', 'segments' and 'column'; expected exactly one of them; "
         "write a value, or a table with one of these keys");

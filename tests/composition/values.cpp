@@ -76,6 +76,16 @@ TEST_CASE("a profile is a value, a table, values by segment, or a column") {
   CHECK(column.column == "radius_mm");
 }
 
+TEST_CASE("a factor scales the values of a profile") {
+  Workbench bench;
+  const auto values = [&](const std::string& value) {
+    return bench.loaded(test::small_scene, {wire_radius(value)}).wires[0].radius.profile.value;
+  };
+  CHECK(values(R"({ table = [["0 mm", "0.5 mm"], ["10 cm", 0.25]], factor = 1.5 })") ==
+        std::vector<double>{0.75, 0.375});
+  CHECK(values(R"({ segments = { cia = "5 mm", eia = "4 mm" }, factor = 2 })") == std::vector<double>{10.0, 8.0});
+}
+
 TEST_CASE("lists of tables and vectors") {
   Workbench bench;
   const Composition scene = bench.loaded(R"(schema = 1
