@@ -1,5 +1,8 @@
 #include "study/study_data.hpp"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace bowstring::study {
 
 const char* spacing_name(Spacing spacing) noexcept {
@@ -14,6 +17,15 @@ const char* spacing_name(Spacing spacing) noexcept {
       return "sampled";
   }
   return "";
+}
+
+bool AxisData::same_problem(int one, int other) const noexcept {
+  if (problem.empty() || one < 0 || other < 0) return true;
+  return problem[static_cast<std::size_t>(one)] == problem[static_cast<std::size_t>(other)];
+}
+
+bool AxisData::has_cases() const noexcept {
+  return std::any_of(problem.begin(), problem.end(), [this](int one) { return one != problem.front(); });
 }
 
 }  // namespace bowstring::study

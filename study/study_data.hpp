@@ -19,9 +19,15 @@ struct AxisData {
   std::vector<std::string> label;  ///< per alternative, in the order of the study file: "10 N", "node-wise-contact"
   std::vector<double> number;      ///< per alternative, in `unit`; empty where an alternative is no number
   Spacing spacing = Spacing::listed;
-  bool is_case = false;  ///< its alternatives are other problems, not other ways to solve one
+  /// Per alternative the problem that it states: those of one problem are ways to solve it, others are cases. Empty:
+  /// all state one.
+  std::vector<int> problem;
 
   bool numeric() const noexcept { return !number.empty(); }
+  /// Whether two alternatives are ways to solve one problem.
+  bool same_problem(int one, int other) const noexcept;
+  /// Whether some two are not.
+  bool has_cases() const noexcept;
 };
 
 /// A quantity of interest.

@@ -106,7 +106,7 @@ Effects find_effects(const StudyData& data) {
       effect.axis = a;
       effect.from = pairs.any(-1, to) ? -1 : 0;
       effect.to = to;
-      if (effect.from == to) continue;
+      if (effect.from == to || !axis.same_problem(effect.from, to)) continue;
       for (std::size_t q = 0; q < values.size(); ++q) {
         Effect own = effect;
         own.quantity = static_cast<int>(q);

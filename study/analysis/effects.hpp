@@ -28,6 +28,7 @@ struct Effects {
   std::vector<Effect> times;
 };
 
+/// Alternatives that state another problem than the first have no effect: nobody chooses between them.
 /// For every axis with alternatives that are no numbers or two to six of them, without the axis of convergence and
 /// samples: the differences from its first alternative, or from the runs in which it has no part where those pair up,
 /// over pairs of runs that agree in everything else. Of pairs that differ in the mesh alone the finest counts: what a

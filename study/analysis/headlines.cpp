@@ -55,7 +55,9 @@ std::string effect_words(const StudyData& data, const Effect& effect, const std:
 void add_effect(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
   std::vector<const Effect*> own;
   for (const Effect& effect : analysis.effects.quantities) {
-    if (effect.quantity == 0) own.push_back(&effect);
+    // What a parameter does is a sensitivity, where the grid gives one.
+    const bool parameter = data.axes[at(effect.axis)].numeric() && !analysis.sensitivities.empty();
+    if (effect.quantity == 0 && !parameter) own.push_back(&effect);
   }
   if (own.empty()) return;
   const Effect& first = *own[0];

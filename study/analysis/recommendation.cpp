@@ -24,7 +24,7 @@ std::vector<int> formulation_axes(const StudyData& data) {
   std::vector<int> words, numbers;
   for (int a = 0; a < static_cast<int>(data.axes.size()); ++a) {
     const AxisData& axis = data.axes[at(a)];
-    if (a == data.along || axis.is_case || sampled(axis) || !varies(data, a)) continue;
+    if (a == data.along || axis.has_cases() || sampled(axis) || !varies(data, a)) continue;
     if (!axis.numeric()) words.push_back(a);
     if (axis.numeric() && axis.label.size() <= few_numbers) numbers.push_back(a);
   }

@@ -27,11 +27,12 @@ struct Recommendation {
   std::string text, detail;           ///< "" without a reference
 };
 
-/// Work and precision. Formulations differ in the axes without numbers that are no cases (AxisData::is_case) or, where
-/// no such axis varies, in those of two to six numbers; the remaining ones give cases. A mesh of a formulation counts
-/// where all of its cases with a known reference have converged and been timed; its error is the largest among them. A
-/// formulation reaches the target at the fastest mesh from which on, at all finer ones that count, the error is at most
-/// data.target_error. Nothing is interpolated: only runs that exist. Times within a factor of 1.2 are called equal.
+/// Work and precision. Formulations differ in the axes without numbers that state one problem (AxisData::problem) or,
+/// where no such axis varies, in those of two to six numbers; the remaining ones give cases. A mesh of a formulation
+/// counts where all of its cases with a known reference have converged and been timed; its error is the largest among
+/// them. A formulation reaches the target at the fastest mesh from which on, at all finer ones that count, the error is
+/// at most data.target_error. Nothing is interpolated: only runs that exist. Times within a factor of 1.2 are called
+/// equal.
 Recommendation recommend(const StudyData& data);
 
 }  // namespace bowstring::study

@@ -340,7 +340,20 @@ class StudyReader {
     exclusion.choices.emplace_back(a, std::move(alternatives));
   }
 
+  /// Every alternative becomes a problem of its own.
+  static void separate(AxisData& axis) {
+    axis.problem.clear();
+    for (std::size_t k = 0; k < axis.label.size(); ++k) axis.problem.push_back(static_cast<int>(k));
+  }
+
+  /// Alternatives with other compositions state other problems; so do those of the axes that the file names.
   void read_cases() {
+    for (Axis& axis : out_.axes) {
+      for (const std::string& base : axis.base) {
+        axis.data.problem.push_back(
+            static_cast<int>(std::find(axis.base.begin(), axis.base.end(), base) - axis.base.begin()));
+      }
+    }
     const Entry* entry = root_.find("cases");
     if (entry == nullptr) return;
     if (!entry->value.is_list()) {
@@ -349,7 +362,7 @@ class StudyReader {
     }
     for (const Node& name : entry->value.items) {
       const int axis = axis_called(name.text, name.position, "'cases'");
-      if (axis >= 0) out_.axes[static_cast<std::size_t>(axis)].data.is_case = true;
+      if (axis >= 0) separate(out_.axes[static_cast<std::size_t>(axis)].data);
     }
   }
 

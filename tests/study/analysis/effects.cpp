@@ -101,4 +101,15 @@ TEST_CASE("an effect on what is 0 has no relative size and comes last") {
   CHECK(std::isnan(effects.quantities[1].relative));
 }
 
+TEST_CASE("alternatives that state another problem have no effect") {
+  StudyData data = study_of({words_axis("swap", {"plain", "other", "another scene"})}, {"q_mm"});
+  add_product(data);
+  data.quantities[0].value = {1.0, 1.5, 7.0};
+  CHECK(find_effects(data).quantities.size() == 2);
+  data.axes[0].problem = {0, 0, 2};
+  const Effects effects = find_effects(data);
+  REQUIRE(effects.quantities.size() == 1);
+  CHECK(effects.quantities[0].to == 1);
+}
+
 }  // namespace

@@ -69,7 +69,7 @@ TEST_CASE("alternatives that are cases are not chosen between, and the worst of 
   StudyData data = study_of({words_axis("contact", {"node-wise", "segment-wise"}),
                              words_axis("scene", {"planar", "helical"}), number_axis("N", {20, 40})},
                             {"q_mm"});
-  data.axes[1].is_case = true;
+  data.axes[1].problem = {0, 1};
   data.along = 2;
   add_product(data);
   data.quantities[0].value = {1.001, 1.001, 1.05, 1.004, 1.002, 1.001, 1.003, 1.001};

@@ -60,6 +60,22 @@ scene = { base = { short = "rod.toml", other = "rod.toml" } }
   CHECK(plan.study.axes[0].data.paths == Texts{"energy.point-load", "solver.tolerance"});
   CHECK(plan.runs[0].hash == plan.runs[1].hash);  // one composition by two names
   CHECK(plan.runs[0].hash != plan.runs[2].hash);
+  CHECK(!plan.study.axes[0].data.has_cases());
+  CHECK(!plan.study.axes[1].data.has_cases());  // one file twice
+}
+
+TEST_CASE("other compositions, and axes that are named as cases, state other problems") {
+  SmallStudy study(R"(cases = ["K"]
+[axes]
+scene = { base = { one = "rod.toml", other = "rod2.toml" } }
+K = { path = "solver.type", values = ["interior-point", "active-set"] }
+)",
+                   "schema = 1\n");
+  study.folder().write("rod2.toml", "schema = 1\nbase = \"rod.toml\"\n");
+  const study::Plan plan = study.plan();
+  CHECK(plan.study.axes[0].data.has_cases());
+  CHECK(!plan.study.axes[0].data.same_problem(0, 1));
+  CHECK(plan.study.axes[1].data.problem == std::vector<int>{0, 1});
 }
 
 TEST_CASE("a logarithmic range has equal ratios and its own ends") {
