@@ -308,7 +308,8 @@ def test_another_plugin_solves_again_what_names_it(command, build):
 
 def main():
     bowstring, source_root, build, library = (sys.argv[1:] + [None])[:4]
-    build = pathlib.Path(build)
+    build = pathlib.Path(build).resolve()
+    library = library and str(pathlib.Path(library).resolve())
     only = os.environ.get("BOWSTRING_TEST_ONLY", "")
     with tempfile.TemporaryDirectory() as folder:
         command = Command(bowstring, source_root, folder)

@@ -12,7 +12,8 @@ class Command:
     """The command of a build, run in a folder of its own."""
 
     def __init__(self, bowstring, source_root, folder):
-        self.bowstring, self.source_root, self.folder = bowstring, pathlib.Path(source_root), pathlib.Path(folder)
+        self.bowstring = str(pathlib.Path(bowstring).resolve())
+        self.source_root, self.folder = pathlib.Path(source_root), pathlib.Path(folder)
 
     def scene(self, name=SCENE):
         return self.source_root / "scenes" / name
