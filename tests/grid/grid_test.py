@@ -1,4 +1,4 @@
-"""The solver grid as a test: a tenth of grid A by every native solver that is there, and about ten small scenes by the
+"""The solver grid as a test: a twentieth of grid A by every native solver that is there, and about ten small scenes by the
 reference solver as well; every result is re-checked by a program that shares no code with the kernel.
 BOWSTRING_TEST_FULL: all grids, and the reference on all meshes that it takes seconds for. BOWSTRING_TEST_SHORT: a few
 small scenes, for builds that are slow.
@@ -25,7 +25,7 @@ def steps(offered, full, short, recheck):
     reference = [name for name in (grid.REFERENCE_SOLVER,) if name in offered]
     common = ["--time-limit", "60", "--check", "--recheck", recheck]
     if native:
-        part = ["--full", *option("--grid", scenes.GRIDS)] if full else ["--every", "10"]
+        part = ["--full", *option("--grid", scenes.GRIDS)] if full else ["--every", "20"]
         if short:
             part = ["--every", "40", "--nodes", "20,40,80,160"]
         yield [*option("--solver", native), *part, *common]
