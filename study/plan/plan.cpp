@@ -230,6 +230,25 @@ std::vector<std::string> folders_of(const StudyFile& study) {
   return out;
 }
 
+/// In a run with two other compositions the later axis would undo the earlier one.
+void check_bases(const Plan& plan, Refusal& refusal) {
+  const std::vector<Axis>& axes = plan.study.axes;
+  std::set<std::pair<std::size_t, std::size_t>> told;
+  for (const PlannedRun& run : plan.runs) {
+    std::optional<std::size_t> first;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      if (axes[a].base[at(run.choice[a])].empty()) continue;
+      if (first && told.emplace(*first, a).second) {
+        refusal.errors.push_back(
+            {axes[a].position,
+             "axes '" + axes[*first].data.name + "' and '" + axes[a].data.name + "' both name the composition of a run",
+             "one composition for each run", "make one axis of them, or leave their combinations out"});
+      }
+      first = a;
+    }
+  }
+}
+
 void check_reference(const Plan& plan, Refusal& refusal) {
   const Reference& reference = plan.study.reference;
   if (reference.axis < 0) return;
@@ -316,6 +335,7 @@ std::optional<Plan> make_plan(StudyFile study, Registry& registry, Refusal& refu
          too_many ? "shorten the axes, or take a sample" : "take one back"});
     return std::nullopt;
   }
+  check_bases(plan, refusal);
   std::vector<Refusal> readings(plan.runs.size());
   Identity identity;
   for (const std::vector<int>& chain : chains_of(plan)) {

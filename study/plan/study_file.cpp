@@ -169,7 +169,6 @@ class StudyReader {
     read_axes(axes->value, out_.file, out_.axes, out_.groups, report_);
     for (const Entry& entry : axes->value.entries) axis_positions_.push_back({entry.key, entry.position});
     check_paths();
-    check_bases();
   }
 
   Position position_of(const Axis& axis) const {
@@ -196,21 +195,6 @@ class StudyReader {
           }
         }
       }
-    }
-  }
-
-  /// A later axis that names a composition would undo an earlier one's.
-  void check_bases() {
-    const Axis* first = nullptr;
-    for (const Axis& axis : out_.axes) {
-      if (std::all_of(axis.base.begin(), axis.base.end(), [](const std::string& file) { return file.empty(); })) {
-        continue;
-      }
-      if (first != nullptr) {
-        fail(position_of(axis), "axes '" + first->data.name + "' and '" + axis.data.name + "' both name compositions",
-             "one axis whose alternatives have a base", "make one axis of them");
-      }
-      first = &axis;
     }
   }
 
