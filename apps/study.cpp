@@ -110,7 +110,7 @@ std::optional<Plan> prepare(const CommonOptions& common, const StudyOptions& opt
   if (refusal.any()) {
     study::check_values(std::move(file), *host, refusal);
   } else {
-    folder.check(file.name, refusal.errors);
+    folder.check(file.name, !options.check, refusal.errors);
     plan = study::make_plan(std::move(file), *host, refusal);
   }
   if (!refusal.any()) return plan;
@@ -123,6 +123,7 @@ int verify(const Plan& plan, const Folder& folder) {
   std::string stored;
   const std::string table = folder.file("results.csv");
   const Collected collected = study::collect(plan, folder);
+  if (problems.empty()) problems = collected.problems;
   if (const std::string why = read_file(table, stored); !why.empty()) {
     problems.push_back(table + ": cannot be read (" + why + "); the same command without --check writes it");
   } else if (problems.empty() && stored != study::results_csv(collected)) {
@@ -198,7 +199,11 @@ int study(const CommonOptions& common, const StudyOptions& options) {
   study::Claims claims;
   Status status = folder.make();
   if (status.ok()) status = claims.open(folder.file("claims.lock"));
-  if (status.ok()) status = folder.write_lock(*plan, options.reduced);
+  if (status.ok()) {
+    claims.take_folder();
+    status = folder.write_lock(*plan, options.reduced);
+    claims.leave_folder();
+  }
   if (!status.ok()) {
     complain(status.text);
     return exit_wrong_input;

@@ -35,10 +35,14 @@ std::string quantity_value(double number, const std::string& unit, bool whole) {
   return unit.empty() ? digits : "\"" + digits + " " + unit + "\"";
 }
 
+std::string with_unit(const std::string& digits, const std::string& unit) {
+  return unit.empty() ? digits : digits + " " + unit;
+}
+
 std::string quantity_label(double number, const std::string& unit) {
   char digits[32];
   std::snprintf(digits, sizeof digits, "%.6g", number);
-  return unit.empty() ? digits : std::string(digits) + " " + unit;
+  return with_unit(digits, unit);
 }
 
 /// The number and unit that a value is; empty where it is none.
@@ -230,7 +234,10 @@ class AxisReader {
   }
 
   void check_distinct(const Node& values, const Axis& axis) {
-    if (distinct(axis.data.label)) return;
+    std::vector<double> numbers = axis.data.number;
+    std::sort(numbers.begin(), numbers.end());
+    const bool same_number = std::adjacent_find(numbers.begin(), numbers.end()) != numbers.end();
+    if (distinct(axis.data.label) && !same_number) return;
     fail(values.position, owner() + " has a value twice", "values that differ", "leave one of them");
   }
 
@@ -292,7 +299,8 @@ class AxisReader {
       return static_cast<int>(count.integer);
     }
     fail(count.position, "'count' of " + whose + " is " + description(count),
-         "a whole number of at least " + std::to_string(least), "write count = " + std::to_string(std::max(least, 5L)));
+         "a whole number from " + std::to_string(least) + " to " + std::to_string(most_alternatives),
+         "write count = " + std::to_string(std::max(least, 5L)));
     return 0;
   }
 
@@ -333,6 +341,11 @@ class AxisReader {
     axis.data.unit = range->unit;
     axis.data.spacing = logarithmic ? Spacing::logarithmic : Spacing::linear;
     for (int i = 0; i < count; ++i) add_number(axis, at(*range, i, count - 1), range->whole, form.value.position);
+    if (!distinct(axis.data.label)) {  // six digits do not tell them apart
+      for (std::size_t i = 0; i < axis.data.label.size(); ++i) {
+        axis.data.label[i] = with_unit(decimal(axis.data.number[i]), axis.data.unit);
+      }
+    }
     check_distinct(form.value, axis);
   }
 
@@ -445,6 +458,7 @@ std::string column_name(const std::string& name) {
 }
 
 std::string unit_suffix(const std::string& unit) {
+  if (unit == "s") return "seconds";  // what may differ between two solves of a run ends with it
   std::string out;
   bool per = false;
   for (const char letter : ascii_unit(unit)) {

@@ -17,7 +17,7 @@ void read_axes(const Node& table, const std::string& study_file, std::vector<Axi
 /// The alternative of an axis that a value means: its label, its number in the axis' unit, a quantity. -1: none.
 int find_alternative(const Axis& axis, const Node& value);
 
-/// "N_mm2" of "N mm^2", "N_per_mm" of "N/mm": a unit as the name of a column has it.
+/// "N_mm2" of "N mm^2", "N_per_mm" of "N/mm", "seconds" of "s": a unit as the name of a column has it.
 std::string unit_suffix(const std::string& unit);
 
 /// A name as a column can have it: letters, digits and '_'.

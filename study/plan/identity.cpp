@@ -4,28 +4,23 @@
 
 #include "core/composition/read_file.hpp"
 #include "core/composition/sha256.hpp"
+#include "study/plan/replace_all.hpp"
 
 namespace bowstring::study {
-namespace {
-
-void replace_all(std::string& text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-}
-
-}  // namespace
-
 const std::string& Identity::content(const std::string& file) {
   const auto [place, fresh] = content_.emplace(file, "");
   if (std::string bytes; fresh && read_file(file, bytes).empty()) place->second = sha256_hex(bytes);
   return place->second;
 }
 
-std::string Identity::of(const Composition& composition, const Provenance& provenance, const std::string& predecessor) {
-  std::string text = composition.resolved_json;
-  for (const std::string& file : data_files_of(composition)) {
-    replace_all(text, nlohmann::json(file).dump(), "\"sha256:" + content(file) + "\"");
+std::string Identity::of(const std::vector<Composition>& states, const Provenance& provenance,
+                         const std::string& predecessor) {
+  std::string text = states.front().resolved_json;
+  for (const Composition& state : states) {
+    for (const std::string& file : data_files_of(state)) {
+      const std::string written = nlohmann::json(file).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+      replace_all(text, written, "\"sha256:" + content(file) + "\"");
+    }
   }
   text += "\nkernel " + provenance.kernel_sha256;
   for (const PluginProvenance& plugin : provenance.plugins) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/composition/composition.hpp"
 #include "core/result/provenance.hpp"
@@ -13,8 +14,10 @@ namespace bowstring::study {
 /// Where any of these stand on the machine makes no difference.
 class Identity {
  public:
-  /// 64 hexadecimal digits. `predecessor`: the identity of the run that it starts from, or "".
-  std::string of(const Composition& composition, const Provenance& provenance, const std::string& predecessor);
+  /// 64 hexadecimal digits. `states`: the composition as it is read for each of its [[step]]s, the first one telling
+  /// what changes in the others; `provenance`: of all of them. `predecessor`: the identity of the run that it starts
+  /// from, or "".
+  std::string of(const std::vector<Composition>& states, const Provenance& provenance, const std::string& predecessor);
 
  private:
   const std::string& content(const std::string& file);

@@ -1,17 +1,22 @@
 #include "study/plan/plan.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
+#include <tuple>
 #include <utility>
 
+#include "core/composition/keys.hpp"
 #include "core/composition/nearest.hpp"
+#include "core/composition/tree.hpp"
 #include "core/result/provenance.hpp"
 #include "study/plan/identity.hpp"
+#include "study/plan/replace_all.hpp"
 
 namespace bowstring::study {
 namespace {
 
-constexpr std::size_t most_runs = 10000000;
+constexpr int most_runs = 1000000;
 constexpr double most_checked_runs = 2000.0;  // of a study that is wrong anyway
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -19,6 +24,16 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 class Product {
  public:
   explicit Product(const StudyFile& study) : study_(study) {}
+
+  /// With those that are excluded.
+  double size() const {
+    double all = 1.0, others = 1.0;
+    for (const AxisGroup& group : study_.groups) {
+      all *= group.count;
+      others += group.count - 1;
+    }
+    return study_.combination == Combination::one_at_a_time ? others : all;
+  }
 
   std::vector<std::vector<int>> choices() const {
     std::vector<int> start(study_.groups.size(), 0);
@@ -34,7 +49,7 @@ class Product {
       }
       return out;
     }
-    for (std::vector<int> index = start; out.size() <= most_runs;) {
+    for (std::vector<int> index = start;;) {
       add(index, out);
       std::size_t g = index.size();
       while (g > 0 && ++index[g - 1] == study_.groups[g - 1].count) index[--g] = 0;
@@ -70,7 +85,7 @@ class Judge {
     std::set<std::string> told;
     for (std::size_t r = 0; r < readings_.size(); ++r) {
       for (const InputError& error : readings_[r].errors) {
-        if (told.count(error.text()) > 0 || !(all_failed || is_of_the_study(error))) continue;
+        if (told.count(error.text()) > 0 || !(all_failed || is_of_the_study(r, error.position))) continue;
         told.insert(error.text());
         refusal.errors.push_back(error);
       }
@@ -88,26 +103,30 @@ class Judge {
     return std::any_of(errors.begin(), errors.end(), [&](const InputError& e) { return e.position == position; });
   }
 
-  bool is_of_the_study(const InputError& error) const {
-    for (std::size_t a = 0; a < plan_.study.axes.size(); ++a) {
+  /// Whether no run can take what stands there: a value of an axis, a composition, or what all runs have in common. The
+  /// numbers of a sample stand in one place and each belongs to one run; there it is the range that no run can take.
+  bool is_of_the_study(std::size_t run, const std::string& position) const {
+    const std::vector<int>& choice = plan_.runs[run].choice;
+    for (std::size_t a = 0; a < choice.size(); ++a) {
       const Axis& axis = plan_.study.axes[a];
-      for (std::size_t k = 0; k < axis.overrides.size(); ++k) {
-        for (const Override& one : axis.overrides[k]) {
-          if (one.position == error.position) return every_run_with(a, static_cast<int>(k), error.position);
-        }
+      const std::vector<Override>& overrides = axis.overrides[at(choice[a])];
+      if (axis.data.spacing != Spacing::sampled &&
+          std::any_of(overrides.begin(), overrides.end(), [&](const Override& o) { return o.position == position; })) {
+        return in_every_run_with(static_cast<int>(a), choice[a], position);
       }
+      const bool other_base = !axis.base[at(choice[a])].empty();
+      if (other_base && in_every_run_with(static_cast<int>(a), choice[a], position)) return true;
     }
-    for (std::size_t r = 0; r < readings_.size(); ++r) {
-      if (!has_error_at(r, error.position)) return false;
-    }
-    return true;
+    return in_every_run_with(-1, 0, position);
   }
 
-  bool every_run_with(std::size_t axis, int alternative, const std::string& position) const {
-    for (std::size_t r = 0; r < readings_.size(); ++r) {
-      if (plan_.runs[r].choice[axis] == alternative && !has_error_at(r, position)) return false;
+  /// `axis`: -1 for all runs. Each answer is found once, for it takes a look at all runs.
+  bool in_every_run_with(int axis, int alternative, const std::string& position) const {
+    const auto [known, fresh] = found_.emplace(std::make_tuple(axis, alternative, position), true);
+    for (std::size_t r = 0; r < readings_.size() && fresh && known->second; ++r) {
+      if (axis < 0 || plan_.runs[r].choice[at(axis)] == alternative) known->second = has_error_at(r, position);
     }
-    return true;
+    return known->second;
   }
 
   bool some_alternative_never_loads(const std::vector<int>& choice) const {
@@ -123,7 +142,45 @@ class Judge {
 
   const Plan& plan_;
   const std::vector<Refusal>& readings_;
+  mutable std::map<std::tuple<int, int, std::string>, bool> found_;
 };
+
+/// A run as the files say it: its composition, once for each [[step]].
+struct ReadRun {
+  std::vector<Composition> states;  ///< empty where `refusal` has got something
+  Provenance provenance;            ///< of all of them
+  Refusal refusal;
+};
+
+void add_plugins(const Provenance& more, Provenance& provenance) {
+  for (const PluginProvenance& plugin : more.plugins) {
+    const auto same = [&](const PluginProvenance& one) { return one.kind == plugin.kind && one.name == plugin.name; };
+    if (std::none_of(provenance.plugins.begin(), provenance.plugins.end(), same)) provenance.plugins.push_back(plugin);
+  }
+}
+
+ReadRun read_run(const CompositionRequest& request, Registry& registry) {
+  ReadRun out;
+  std::size_t steps = 1;
+  for (std::size_t k = 0; k < steps && !out.refusal.any(); ++k) {
+    CompositionRequest one = request;
+    one.step = static_cast<int>(k);
+    one.from_memory = request.from_memory || k > 0;
+    CompositionOutcome outcome = load_composition(one, registry);
+    out.refusal = {std::move(outcome.errors), outcome.plugin_failure};
+    if (!outcome.composition) break;
+    steps = std::max(steps, outcome.composition->steps.size());
+    Provenance provenance = provenance_of(*outcome.composition, registry);
+    if (k == 0) {
+      out.provenance = std::move(provenance);
+    } else {
+      add_plugins(provenance, out.provenance);
+    }
+    out.states.push_back(std::move(*outcome.composition));
+  }
+  if (out.refusal.any()) out.states.clear();
+  return out;
+}
 
 void note_libraries(const Provenance& provenance, std::map<std::string, std::string>& libraries) {
   libraries["kernel"] = provenance.kernel_sha256;
@@ -132,21 +189,26 @@ void note_libraries(const Provenance& provenance, std::map<std::string, std::str
   }
 }
 
+std::string predecessor_hash(const Plan& plan, const PlannedRun& run) {
+  return run.predecessor < 0 ? "" : plan.runs[at(run.predecessor)].hash;
+}
+
+/// A run's choices, but -1 for the axis and those that are walked with it: what the runs along it have in common.
+std::vector<int> without_walk(const StudyFile& study, std::vector<int> choice, int axis) {
+  for (const AxisGroup& group : study.groups) {
+    if (std::find(group.axes.begin(), group.axes.end(), axis) == group.axes.end()) continue;
+    for (const int walked : group.axes) choice[at(walked)] = -1;
+  }
+  return choice;
+}
+
 /// Chains along the warm axis: the runs that agree in every axis but those walked with it.
 std::vector<std::vector<int>> chains_of(const Plan& plan) {
   std::vector<std::vector<int>> chains;
   const StudyFile& study = plan.study;
-  std::vector<char> warm(study.axes.size(), 0);
-  for (const AxisGroup& group : study.groups) {
-    if (std::find(group.axes.begin(), group.axes.end(), study.warm_along) == group.axes.end()) continue;
-    for (const int axis : group.axes) warm[at(axis)] = 1;
-  }
   std::map<std::vector<int>, std::size_t> place;
   for (std::size_t r = 0; r < plan.runs.size(); ++r) {
-    std::vector<int> key = plan.runs[r].choice;
-    for (std::size_t a = 0; a < key.size(); ++a) {
-      if (warm[a] != 0) key[a] = -1;
-    }
+    std::vector<int> key = without_walk(study, plan.runs[r].choice, study.warm_along);
     if (study.warm_along < 0) key.push_back(static_cast<int>(r));
     const auto [found, fresh] = place.emplace(std::move(key), chains.size());
     if (fresh) chains.emplace_back();
@@ -155,15 +217,54 @@ std::vector<std::vector<int>> chains_of(const Plan& plan) {
   return chains;
 }
 
+/// Where its files stand, as messages begin their names: "/home/somebody/study/". An inner one before an outer one.
+std::vector<std::string> folders_of(const StudyFile& study) {
+  std::vector<std::string> files = bases_of(study), out;
+  files.push_back(study.file);
+  std::error_code ignored;
+  for (const std::string& file : files) {
+    const std::string folder = std::filesystem::absolute(file, ignored).parent_path().lexically_normal().string() + "/";
+    if (folder != "/" && !contains_name(out, folder)) out.push_back(folder);
+  }
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return out;
+}
+
+/// In a run with two other compositions the later axis would undo the earlier one.
+void check_bases(const Plan& plan, Refusal& refusal) {
+  const std::vector<Axis>& axes = plan.study.axes;
+  std::set<std::pair<std::size_t, std::size_t>> told;
+  for (const PlannedRun& run : plan.runs) {
+    std::optional<std::size_t> first;
+    for (std::size_t a = 0; a < axes.size(); ++a) {
+      if (axes[a].base[at(run.choice[a])].empty()) continue;
+      if (first && told.emplace(*first, a).second) {
+        refusal.errors.push_back(
+            {axes[a].position,
+             "axes '" + axes[*first].data.name + "' and '" + axes[a].data.name + "' both name the composition of a run",
+             "one composition for each run", "make one axis of them, or leave their combinations out"});
+      }
+      first = a;
+    }
+  }
+}
+
 void check_reference(const Plan& plan, Refusal& refusal) {
   const Reference& reference = plan.study.reference;
   if (reference.axis < 0) return;
-  const auto held = [&](const PlannedRun& run) {
-    return run.refusal.empty() && std::all_of(reference.at.begin(), reference.at.end(), [&](const auto& place) {
-             return run.choice[at(place.first)] == place.second;
-           });
+  // An extrapolation is made of several meshes, whichever; the finest one is one of them.
+  const std::vector<double>& meshes = plan.study.axes[at(reference.axis)].data.number;
+  const auto finest = static_cast<int>(std::max_element(meshes.begin(), meshes.end()) - meshes.begin());
+  std::map<std::vector<int>, int> family;
+  const auto reaches = [&](const PlannedRun& run) {
+    if (!run.refusal.empty()) return false;
+    for (const auto& [axis, alternative] : reference.at) {
+      if (run.choice[at(axis)] != alternative) return false;
+    }
+    if (reference.form == Reference::Form::finest) return run.choice[at(reference.axis)] == finest;
+    return ++family[without_walk(plan.study, run.choice, reference.axis)] >= 3;
   };
-  if (std::any_of(plan.runs.begin(), plan.runs.end(), held)) return;
+  if (std::any_of(plan.runs.begin(), plan.runs.end(), reaches)) return;
   refusal.errors.push_back(
       {reference.position, "the reference (" + reference.text + ") is not reached: no run is there",
        "at least one run of the study that can be solved", "take the exclusion back, or hold other axes under 'at'"});
@@ -185,7 +286,7 @@ CompositionRequest request_of(const StudyFile& study, const std::vector<int>& ch
   return request;
 }
 
-std::string refusal_reason(const Refusal& refusal) {
+std::string refusal_reason(const StudyFile& study, const Refusal& refusal) {
   std::vector<std::string> texts;
   for (InputError error : refusal.errors) {
     error.position.clear();
@@ -194,6 +295,7 @@ std::string refusal_reason(const Refusal& refusal) {
   if (!refusal.plugin_failure.ok()) texts.push_back(refusal.plugin_failure.text);
   std::string out = joined(texts, "; ");
   std::replace(out.begin(), out.end(), '\n', ' ');
+  for (const std::string& folder : folders_of(study)) replace_all(out, folder, "");
   return out;
 }
 
@@ -206,37 +308,49 @@ std::string run_label(const StudyFile& study, const std::vector<int>& choice) {
   return comma_separated(texts);
 }
 
+std::string hash_now(const Plan& plan, int run, Registry& registry) {
+  const PlannedRun& planned = plan.runs[at(run)];
+  const ReadRun read = read_run(request_of(plan.study, planned.choice), registry);
+  if (read.states.empty()) return "";
+  return Identity().of(read.states, read.provenance, predecessor_hash(plan, planned));
+}
+
 std::optional<Plan> make_plan(StudyFile study, Registry& registry, Refusal& refusal) {
   Plan plan;
   plan.study = std::move(study);
-  for (std::vector<int>& choice : Product(plan.study).choices()) {
-    PlannedRun run;
-    run.choice = std::move(choice);
-    plan.runs.push_back(std::move(run));
+  const Product product(plan.study);
+  const bool too_many = product.size() > most_runs;
+  if (!too_many) {
+    for (std::vector<int>& choice : product.choices()) {
+      PlannedRun run;
+      run.choice = std::move(choice);
+      plan.runs.push_back(std::move(run));
+    }
   }
-  if (plan.runs.empty() || plan.runs.size() > most_runs) {
-    refusal.errors.push_back({plan.study.file, plan.runs.empty() ? "the exclusions leave no run" : "too many runs",
-                              "between 1 and " + std::to_string(most_runs) + " runs",
-                              plan.runs.empty() ? "take one back" : "shorten its axes"});
+  if (plan.runs.empty()) {
+    refusal.errors.push_back(
+        {plan.study.file,
+         too_many ? "the axes make " + decimal(product.size()) + " combinations" : "the exclusions leave no run",
+         "between 1 and " + std::to_string(most_runs) + " runs",
+         too_many ? "shorten the axes, or take a sample" : "take one back"});
     return std::nullopt;
   }
+  check_bases(plan, refusal);
   std::vector<Refusal> readings(plan.runs.size());
   Identity identity;
   for (const std::vector<int>& chain : chains_of(plan)) {
     Unit unit;
     for (const int r : chain) {
       PlannedRun& run = plan.runs[at(r)];
-      CompositionOutcome outcome = load_composition(request_of(plan.study, run.choice), registry);
-      readings[at(r)] = {std::move(outcome.errors), outcome.plugin_failure};
-      if (!outcome.composition) {
-        run.refusal = refusal_reason(readings[at(r)]);
+      ReadRun read = read_run(request_of(plan.study, run.choice), registry);
+      readings[at(r)] = std::move(read.refusal);
+      if (read.states.empty()) {
+        run.refusal = refusal_reason(plan.study, readings[at(r)]);
         continue;
       }
-      const Provenance provenance = provenance_of(*outcome.composition, registry);
-      note_libraries(provenance, plan.libraries);
+      note_libraries(read.provenance, plan.libraries);
       if (!unit.runs.empty()) run.predecessor = unit.runs.back();
-      run.hash =
-          identity.of(*outcome.composition, provenance, run.predecessor < 0 ? "" : plan.runs[at(run.predecessor)].hash);
+      run.hash = identity.of(read.states, read.provenance, predecessor_hash(plan, run));
       unit.runs.push_back(r);
     }
     if (!unit.runs.empty()) plan.units.push_back(std::move(unit));
@@ -250,9 +364,8 @@ std::optional<Plan> make_plan(StudyFile study, Registry& registry, Refusal& refu
 void check_values(StudyFile study, Registry& registry, Refusal& refusal) {
   if (study.axes.empty() || request_of(study, std::vector<int>(study.axes.size(), 0)).file.empty()) return;
   study.reference = {};
-  double runs = 1.0;
-  for (const AxisGroup& group : study.groups) runs *= group.count;
-  if (runs > most_checked_runs) study.combination = Combination::one_at_a_time;
+  if (Product(study).size() > most_checked_runs) study.combination = Combination::one_at_a_time;
+  if (Product(study).size() > most_checked_runs) return;
   make_plan(std::move(study), registry, refusal);
 }
 

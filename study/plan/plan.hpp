@@ -36,11 +36,14 @@ struct Plan {
 /// The composition of a run, with the study's overrides and those of its alternatives.
 CompositionRequest request_of(const StudyFile& study, const std::vector<int>& choice);
 
-/// A refusal as the reason of a run: on one line, and without places, which are those of a machine.
-std::string refusal_reason(const Refusal& refusal);
+/// A refusal as the reason of a run: on one line, and without places and folders, which are those of a machine.
+std::string refusal_reason(const StudyFile& study, const Refusal& refusal);
 
 /// "T = 10 N, contact = node-wise-contact", for people.
 std::string run_label(const StudyFile& study, const std::vector<int>& choice);
+
+/// What the run would be told apart by if the study were read at this moment; "" where it cannot be read.
+std::string hash_now(const Plan& plan, int run, Registry& registry);
 
 /// Reads every composition of the study. A value that no run can take is an error of the study, and so is what all runs
 /// have in common; what only some combinations cannot take is a refused run. Empty where `refusal` has got something.

@@ -42,16 +42,6 @@ std::string without_unit(const std::string& name) {
   return name;
 }
 
-/// "peak_displacement_mm", "energy_total_N_mm", "curvature_max_per_mm".
-std::string default_column(const QuantityOfInterest& quantity) {
-  const bool energy = quantity.path.rfind("energy.", 0) == 0;
-  const std::string name = energy ? quantity.path : last_step(quantity.path);
-  const std::string reduction = reduction_name(quantity.reduction);
-  std::string out = column_name(without_unit(name)) + (reduction.empty() ? "" : "_" + reduction);
-  if (!quantity.unit.empty()) out += "_" + unit_suffix(quantity.unit);
-  return out;
-}
-
 class Reader {
  public:
   explicit Reader(Report& report) : report_(report) {}
@@ -75,7 +65,7 @@ class Reader {
   void add(const std::string& name, const Node& node, const Position& position) {
     const std::string whose = name.empty() ? "a quantity" : "quantity '" + name + "'";
     QuantityOfInterest quantity;
-    quantity.position = position.text();
+    quantity.position = position;
     if (node.is_text()) {
       quantity.path = node.text;
     } else if (node.is_table()) {
@@ -130,9 +120,19 @@ const char* reduction_name(Reduction reduction) noexcept {
   return "";
 }
 
+std::string default_column(const QuantityOfInterest& quantity) {
+  const bool energy = quantity.path.rfind("energy.", 0) == 0;
+  const std::string name = energy ? quantity.path : last_step(quantity.path);
+  const std::string reduction = reduction_name(quantity.reduction);
+  std::string out = column_name(without_unit(name)) + (reduction.empty() ? "" : "_" + reduction);
+  if (!quantity.unit.empty()) out += "_" + unit_suffix(quantity.unit);
+  return out;
+}
+
 std::string unit_of_path(const std::string& path) {
   if (path.rfind("energy.", 0) == 0) return "N mm";
   const std::string key = last_step(path);
+  if (path.find("seconds.") != std::string::npos) return "s";
   if (path.rfind("certificate.", 0) == 0) {
     if (key == "stationarity" || key == "min_multiplier") return "N";
     if (key == "complementarity") return "N mm";

@@ -1,5 +1,6 @@
 #include "study/plan/references.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -225,14 +226,22 @@ class Reader {
              "'at' of [reference] has " + description(entry.value) + ", which is no value of axis '" + entry.key + "'",
              "one of: " + comma_separated(axis.data.label),
              "the reference would not be reached: name a value of the axis");
-      } else if (a == out_.axis) {
+      } else if (walked_with_the_reference(a)) {
         fail(entry.position, "'at' of [reference] holds '" + entry.key + "', along which the reference is looked for",
-             "other axes", "remove it");
+             "axes that are not walked with it", "remove it");
       } else {
         places.emplace_back(a, k);
       }
     }
     return places;
+  }
+
+  bool walked_with_the_reference(int axis) const {
+    if (out_.axis < 0) return false;
+    return std::any_of(study_.groups.begin(), study_.groups.end(), [&](const AxisGroup& group) {
+      const auto has = [&](int a) { return std::find(group.axes.begin(), group.axes.end(), a) != group.axes.end(); };
+      return has(axis) && has(out_.axis);
+    });
   }
 
   static std::size_t finest(const Axis& axis) {

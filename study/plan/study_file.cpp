@@ -382,27 +382,25 @@ class StudyReader {
   }
 
   void check_columns() {
-    static const std::vector<std::string> taken{"run",
-                                                "status",
-                                                "second_order",
-                                                "unknowns",
-                                                "iterations",
-                                                "factorizations",
-                                                "evaluations",
-                                                "epochs",
-                                                "stationarity_N",
-                                                "min_stretch",
-                                                "max_penetration_mm",
-                                                "reason",
-                                                "setup_seconds",
-                                                "solve_seconds",
-                                                "total_seconds",
-                                                "load_seconds",
-                                                "max_penetration_dense_mm"};
-    std::vector<std::string> columns;
+    // A quantity may be one of the table's own figures, which then stands there once.
+    static const std::vector<std::string> figures{
+        "unknowns",    "iterations",         "factorizations",          "evaluations", "epochs", "stationarity_N",
+        "min_stretch", "max_penetration_mm", "max_penetration_dense_mm"};
+    static const std::vector<std::string> others{"run",           "status",        "second_order",
+                                                 "reason",        "setup_seconds", "solve_seconds",
+                                                 "total_seconds", "load_seconds",  "least_solve_seconds"};
+    std::vector<std::string> columns = others;
+    for (const QuantityOfInterest& quantity : out_.quantities) {
+      const bool own = contains_name(figures, quantity.column) && quantity.column != default_column(quantity);
+      if (own || contains_name(columns, quantity.column)) {
+        fail(quantity.position, "a quantity has the column '" + quantity.column + "', which is taken",
+             "a name of its own", "write quantities as a table: name = \"path\"");
+      }
+      columns.push_back(quantity.column);
+    }
+    columns.insert(columns.end(), figures.begin(), figures.end());
     for (const Axis& axis : out_.axes) {
-      const bool twice = std::find(columns.begin(), columns.end(), axis.data.column) != columns.end();
-      if (twice || contains_name(taken, axis.data.column)) {
+      if (contains_name(columns, axis.data.column)) {
         fail(position_of(axis),
              "axis '" + axis.data.name + "' has the column '" + axis.data.column + "', which is taken",
              "a name of its own", "rename the axis");

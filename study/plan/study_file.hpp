@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/composition/composition.hpp"
+#include "core/composition/position.hpp"
 #include "study/study_data.hpp"
 
 namespace bowstring::study {
@@ -33,7 +34,7 @@ struct QuantityOfInterest {
   std::string column, unit;
   std::string path;
   Reduction reduction = Reduction::none;
-  std::string position;
+  Position position;
 };
 const char* reduction_name(QuantityOfInterest::Reduction reduction) noexcept;  ///< "max", "rms"; "" for none
 

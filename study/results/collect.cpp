@@ -7,6 +7,7 @@
 #include "core/result/provenance.hpp"
 #include "study/results/references.hpp"
 #include "study/workers/run_solver.hpp"
+#include "study/workers/unit_work.hpp"
 
 namespace bowstring::study {
 namespace {
@@ -108,6 +109,8 @@ Collected collect(const Plan& plan, const Folder& folder) {
       record.reason = planned.refusal;
     } else if (folder.load(planned.hash, record, why) != Stored::whole) {
       out.problems.push_back(why.empty() ? folder.record_file(planned.hash) + ": missing" : why);
+    } else if (!is_complete(plan, folder, static_cast<int>(r), record, false)) {
+      out.problems.push_back(folder.record_file(planned.hash) + ": lacks what the study asks for");
     } else {
       for (std::size_t k = 0; k < plan.study.quantities.size(); ++k) {
         out.data.quantities[k].value[r] = value_of(record, plan.study.quantities[k], folder, out.problems);

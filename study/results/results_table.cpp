@@ -85,6 +85,7 @@ class Table {
   }
 
   void add_count(const std::string& name, int RunRecord::*count) {
+    if (has_column(name)) return;
     add(name, [this, count](std::size_t r) {
       const bool solved = !records_[r].solve_seconds.empty();
       return solved ? std::to_string(records_[r].*count) : std::string();

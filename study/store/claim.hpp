@@ -19,8 +19,8 @@ class Claims {
   /// Opens the lock file, which it makes where there is none. Every process opens its own.
   Status open(const std::string& file);
 
-  /// Whether the run is this process's. `wait`: until it is; else false at once where somebody else has it.
-  bool take(const std::string& hash, bool wait);
+  /// Whether the run is this process's from here on; false at once where somebody else has it.
+  bool take(const std::string& hash);
   void leave(const std::string& hash);
 
   /// The whole folder, for what is written once for all runs; waits for it.

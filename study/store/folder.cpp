@@ -61,7 +61,7 @@ std::string Folder::owner(std::string& why) const {
   return "";
 }
 
-void Folder::check(const std::string& study, std::vector<InputError>& errors) const {
+void Folder::check(const std::string& study, bool to_write, std::vector<InputError>& errors) const {
   const auto fail = [&](const std::string& found, const std::string& expected, const std::string& mend) {
     errors.push_back({"--out " + path_, found, expected, mend});
   };
@@ -88,7 +88,7 @@ void Folder::check(const std::string& study, std::vector<InputError>& errors) co
     return fail("the folder holds '" + name + "' and no " + lock_name, "a folder of this study, or an empty or new one",
                 "name another folder");
   }
-  for (fs::path place = fs::path(path_) / "runs"; !place.empty(); place = place.parent_path()) {
+  for (fs::path place = fs::path(path_) / "runs"; to_write && !place.empty(); place = place.parent_path()) {
     if (!fs::exists(place, error)) continue;
     const std::string obstructed = obstacle((place / "x").string());
     if (!obstructed.empty()) {
@@ -162,7 +162,7 @@ void Folder::sweep(Claims& claims) const {
   }
   for (const fs::path& part : left) {
     const std::string hash = part.filename().string().substr(0, part.filename().string().find('.'));
-    if (hash.size() != 64 || !claims.take(hash, false)) continue;
+    if (hash.size() != 64 || !claims.take(hash)) continue;
     fs::remove(part, error);
     claims.leave(hash);
   }

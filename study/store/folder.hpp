@@ -28,8 +28,9 @@ class Folder {
     while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
   }
 
-  /// Whether the folder is this study's, or can become it. What is wrong is in `errors`; nothing is written.
-  void check(const std::string& study, std::vector<InputError>& errors) const;
+  /// Whether the folder is this study's, or can become it, and can be written if it is `to_write`. What is wrong is in
+  /// `errors`; nothing is written.
+  void check(const std::string& study, bool to_write, std::vector<InputError>& errors) const;
 
   /// Makes it where it is not there yet.
   Status make() const;

@@ -58,6 +58,7 @@ Json json_of(const RunRecord& record) {
             {"setup", record.setup_seconds},
             {"solve", record.solve_seconds},
             {"total", record.total_seconds}}},
+          {"time_limit", record.time_limit > 0.0 ? Json(record.time_limit) : Json(nullptr)},
           {"host", record.host},
           {"peak_memory_MB", record.peak_memory_MB},
           {"document_sha256", text_or_null(record.document_sha256)}};
@@ -84,6 +85,7 @@ void read(const Json& json, RunRecord& out) {
   out.setup_seconds = seconds.at("setup").get<double>();
   out.solve_seconds = seconds.at("solve").get<std::vector<double>>();
   out.total_seconds = seconds.at("total").get<double>();
+  out.time_limit = number_of(json.at("time_limit")).value_or(0.0);
   out.host = text_of(json.at("host"));
   out.peak_memory_MB = json.at("peak_memory_MB").get<double>();
   out.document_sha256 = text_of(json.at("document_sha256"));

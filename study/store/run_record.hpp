@@ -13,7 +13,8 @@ namespace bowstring::study {
 struct RunRecord {
   using Number = std::optional<double>;
 
-  std::string hash, predecessor;
+  std::string hash;
+  std::string predecessor;  ///< the run whose result it started from; "" where it started from cold
   std::string status, reason;
   std::string second_order;  ///< "" where it was not judged
   std::vector<std::string> warnings;
@@ -24,6 +25,7 @@ struct RunRecord {
   double load_seconds = 0.0, setup_seconds = 0.0;
   std::vector<double> solve_seconds;  ///< one for each repeat
   double total_seconds = 0.0;
+  double time_limit = 0.0;  ///< s, that ended the run; 0: none did
   std::string host;
   double peak_memory_MB = 0.0;  ///< of the process that solved it, and of what it solved before
   std::string document_sha256;  ///< of the result document (not compressed); "" where it is not kept

@@ -26,6 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr auto patience = std::chrono::seconds(2);  // with a run that is to be given up
 constexpr auto look_every = std::chrono::milliseconds(5);
 constexpr int most_attempts = 2;
 constexpr int most_rounds = 3;
@@ -150,8 +151,10 @@ class Pool {
     std::string why;
     const Stored stored = folder_.load(plan_.runs[static_cast<std::size_t>(run)].hash, record, why);
     if (stored == Stored::damaged) note(why);
-    return stored == Stored::whole && has_all(record, plan_.study, options_.keep_documents || unit.runs.size() > 1);
+    return stored == Stored::whole && is_complete(plan_, folder_, run, record, keeps_document(unit));
   }
+
+  bool keeps_document(const Unit& unit) const { return options_.keep_documents || unit.runs.size() > 1; }
 
   void go_round() {
     shared_.board().next.store(0);
@@ -162,6 +165,7 @@ class Pool {
       std::this_thread::sleep_for(look_every);
       if (stopped()) shared_.board().stop.store(true);
       end_overdue();
+      end_those_that_do_not_stop();
       collect();
       tell();
     }
@@ -249,29 +253,43 @@ class Pool {
       workers_[i].process = -1;
       Desk& desk = shared_.desk(i);
       if (desk.has_problem.load()) note(desk.problem);
-      if (desk.finished.load() || stopped() || !outcome_.problems.empty()) continue;
+      if (desk.finished.load() || stopped() || shared_.board().stop.load()) continue;
       take_over(i, desk.run.load(), end_of_process(status));
     }
   }
 
   /// A worker is gone, with the run that it had: only a complete record counts, whatever it ended with.
   void take_over(std::size_t i, int run, const std::string& how) {
-    const std::string reason = overdue_.count(run) > 0 ? "it took longer than its time limit"
-                                                       : "the process that solved it ended with " + how + ", twice";
     if (run < 0 && ++idle_deaths_ > most_idle_deaths) {
       return note("processes end before they have solved anything, the last one with " + how);
     }
-    int unit = -1;
-    if (run >= 0) {
-      const bool again = overdue_.count(run) == 0 && ++attempts_[static_cast<std::size_t>(run)] < most_attempts;
-      if (!again) {
-        const Status status = folder_.store(failed_run(plan_, run, reason), "");
-        if (!status.ok()) return note(status.text);
-        ++shared_.board().solved;
-      }
-      unit = unit_of(run);
+    const int unit = run < 0 ? -1 : unit_of(run);
+    if (run >= 0 && (overdue_.count(run) > 0 || ++attempts_[static_cast<std::size_t>(run)] >= most_attempts)) {
+      const std::string problem = give_up(run, plan_.units[static_cast<std::size_t>(unit)], how);
+      if (!problem.empty()) return note(problem);
     }
     start(i, unit);
+  }
+
+  /// The run's result is that it fails, unless it was stored in the last moment, or another command has taken it on.
+  std::string give_up(int run, const Unit& unit, const std::string& how) {
+    const std::string& hash = plan_.runs[static_cast<std::size_t>(run)].hash;
+    Claims claims;
+    if (const Status status = claims.open(folder_.file("claims.lock")); !status.ok()) return status.text;
+    if (!claims.take(hash)) return "";
+    RunRecord record;
+    std::string why;
+    const Stored stored = folder_.load(hash, record, why);
+    if (stored == Stored::damaged) return why;
+    if (stored == Stored::whole && is_complete(plan_, folder_, run, record, keeps_document(unit))) return "";
+    const bool overdue = overdue_.count(run) > 0;
+    record = failed_run(
+        plan_, run,
+        overdue ? "it took longer than its time limit" : "the process that solved it ended with " + how + ", twice");
+    if (overdue) record.time_limit = plan_.study.time_limit;
+    if (const Status status = folder_.store(record, ""); !status.ok()) return status.text;
+    ++shared_.board().solved;
+    return "";
   }
 
   int unit_of(int run) const {
@@ -290,6 +308,17 @@ class Pool {
       if (workers_[i].process <= 0 || run < 0 || seconds < plan_.study.time_limit) continue;
       overdue_.insert(run);
       ::kill(workers_[i].process, SIGKILL);
+    }
+  }
+
+  /// Within an iteration nobody hears of a stop. Nothing is lost with a process: what it stores is whole or not there.
+  void end_those_that_do_not_stop() {
+    if (!shared_.board().stop.load()) {
+      stop_seen_ = Clock::now();
+    } else if (Clock::now() - stop_seen_ > patience) {
+      for (const Worker& worker : workers_) {
+        if (worker.process > 0) ::kill(worker.process, SIGKILL);
+      }
     }
   }
 
@@ -317,6 +346,7 @@ class Pool {
   std::vector<int> units_;
   PoolOutcome outcome_;
   const Clock::time_point begin_ = Clock::now();
+  Clock::time_point stop_seen_ = begin_;
 };
 
 }  // namespace

@@ -114,18 +114,16 @@ void take_seconds(const Seconds& seconds, RunRecord& record) {
   record.total_seconds = seconds.total;
 }
 
-std::string study_json(const Plan& plan, int run) {
-  const PlannedRun& planned = plan.runs[static_cast<std::size_t>(run)];
-  const Json predecessor =
-      planned.predecessor < 0 ? Json(nullptr) : Json(plan.runs[static_cast<std::size_t>(planned.predecessor)].hash);
-  return Json({{"name", plan.study.name}, {"hash", planned.hash}, {"predecessor", predecessor}}).dump();
+std::string study_json(const Plan& plan, const RunRecord& record) {
+  const Json predecessor = record.predecessor.empty() ? Json(nullptr) : Json(record.predecessor);
+  return Json({{"name", plan.study.name}, {"hash", record.hash}, {"predecessor", predecessor}})
+      .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 RunRecord started(const Plan& plan, int run) {
   const PlannedRun& planned = plan.runs[static_cast<std::size_t>(run)];
   RunRecord record;
   record.hash = planned.hash;
-  if (planned.predecessor >= 0) record.predecessor = plan.runs[static_cast<std::size_t>(planned.predecessor)].hash;
   record.host = host_name();
   record.peak_memory_MB = peak_memory_MB();
   return record;
@@ -186,12 +184,21 @@ SolvedRun solve_run(const Plan& plan, int run, const CarriedState* carried, bool
     return !out.stopped;
   };
   out.record = started(plan, run);
+  if (carried != nullptr) {
+    const int predecessor = plan.runs[static_cast<std::size_t>(run)].predecessor;
+    out.record.predecessor = plan.runs[static_cast<std::size_t>(predecessor)].hash;
+  }
   std::string first_scalars;
   for (int repeat = 0; repeat < plan.study.repeats && !out.stopped; ++repeat) {
     Refusal refusal;
     const std::unique_ptr<Procedure> procedure = Procedure::prepare(request, registry, refusal, carried);
+    if (repeat == 0 && hash_now(plan, run, registry) != out.record.hash) {
+      out.problem = "files of the run " + run_label(plan.study, plan.runs[static_cast<std::size_t>(run)].choice) +
+                    " have changed since the study was read; the same command begins with them as they are";
+      return out;
+    }
     if (procedure == nullptr) {
-      out.record = failed_run(plan, run, refusal_reason(refusal));
+      out.record = failed_run(plan, run, refusal_reason(plan.study, refusal));
       out.record.status = "refused";
       return out;
     }
@@ -206,7 +213,7 @@ SolvedRun solve_run(const Plan& plan, int run, const CarriedState* carried, bool
     first_scalars = scalars;
     const bool by_document = std::any_of(plan.study.quantities.begin(), plan.study.quantities.end(),
                                          [](const auto& quantity) { return !is_scalar_path(quantity.path); });
-    if (with_document || by_document) out.document = result_document(states, study_json(plan, run));
+    if (with_document || by_document) out.document = result_document(states, study_json(plan, out.record));
     const Json read = Json::parse(scalars);
     take_scalars(read, out.record);
     take_counts(result, out.record);

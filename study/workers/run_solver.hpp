@@ -17,6 +17,7 @@ struct SolvedRun {
   std::string document;                ///< "" where it was not asked for and no quantity needs it
   std::optional<CarriedState> result;  ///< what the next run of a warm chain starts from; empty unless converged
   bool stopped = false;                ///< `go_on` said no: this is not the run's result
+  std::string problem;                 ///< why there is no result of the run that was planned; "" where there is
 };
 
 /// Solves one run in this process, `repeats` times. A composition that is refused is a record with that status.

@@ -1,18 +1,51 @@
 #include "study/workers/unit_work.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <exception>
+#include <thread>
 
 #include "study/workers/run_solver.hpp"
 
 namespace bowstring::study {
 
+namespace {
+
+constexpr auto look_every = std::chrono::milliseconds(20);
+
 bool has_all(const RunRecord& record, const StudyFile& study, bool keep_documents) {
+  if (record.time_limit > 0.0) return study.time_limit > 0.0 && study.time_limit <= record.time_limit;
   if (record.status == "refused" || record.solve_seconds.empty()) return true;  // there is no more to be had
   if (keep_documents && record.document_sha256.empty()) return false;
   if (static_cast<int>(record.solve_seconds.size()) < study.repeats) return false;
   return !record.document_sha256.empty() ||
          std::all_of(study.quantities.begin(), study.quantities.end(),
                      [&](const auto& quantity) { return record.values.count(value_key(quantity)) > 0; });
+}
+
+/// A predecessor may have failed where this run was solved, and have been solved since, or the other way round.
+bool starts_where_it_has_to(const Plan& plan, const Folder& folder, int run, const RunRecord& record) {
+  const int predecessor = plan.runs[static_cast<std::size_t>(run)].predecessor;
+  if (predecessor < 0 || record.solve_seconds.empty()) return true;
+  RunRecord before;
+  std::string why;
+  if (folder.load(plan.runs[static_cast<std::size_t>(predecessor)].hash, before, why) != Stored::whole) return true;
+  return (before.status == "converged") == !record.predecessor.empty();
+}
+
+}  // namespace
+
+bool is_complete(const Plan& plan, const Folder& folder, int run, const RunRecord& record, bool keep_documents) {
+  return has_all(record, plan.study, keep_documents) && starts_where_it_has_to(plan, folder, run, record);
+}
+
+/// Waiting in the system would not hear of a stop.
+bool UnitWork::take_claim(const std::string& hash, bool wait) {
+  while (!claims_.take(hash)) {
+    if (!wait || !hooks_.go_on()) return false;
+    std::this_thread::sleep_for(look_every);
+  }
+  return true;
 }
 
 UnitWork::Outcome UnitWork::carry_out(const Unit& unit, bool wait, std::string& problem) {
@@ -23,7 +56,7 @@ UnitWork::Outcome UnitWork::carry_out(const Unit& unit, bool wait, std::string& 
     if (!hooks_.go_on()) return Outcome::stopped;
     const std::string& hash = plan_.runs[static_cast<std::size_t>(unit.runs[i])].hash;
     // Whoever has begun a chain goes on with it: later runs are waited for.
-    if (!claims_.take(hash, wait || i > 0)) return Outcome::busy;
+    if (!take_claim(hash, wait || i > 0)) return hooks_.go_on() ? Outcome::busy : Outcome::stopped;
     outcome = take_step(unit, i, carried, problem);
     claims_.leave(hash);
   }
@@ -40,7 +73,7 @@ UnitWork::Outcome UnitWork::take_step(const Unit& unit, std::size_t place, std::
     case Stored::damaged:
       return Outcome::failed;
     case Stored::whole:
-      if (has_all(record, plan_.study, keep_documents_ || in_chain)) return Outcome::done;
+      if (is_complete(plan_, folder_, run, record, keep_documents_ || in_chain)) return Outcome::done;
       break;
     case Stored::missing:
       break;
@@ -64,13 +97,27 @@ bool UnitWork::load_predecessor(int run, std::optional<CarriedState>& carried, s
   return problem.empty();
 }
 
+/// A run that throws is a result as well.
+SolvedRun UnitWork::solve_guarded(int run, const CarriedState* carried, bool with_document) {
+  try {
+    return solve_run(plan_, run, carried, with_document, registry_, hooks_.go_on);
+  } catch (const std::exception& error) {
+    SolvedRun out;
+    out.record = failed_run(plan_, run, std::string("solving it threw an exception: ") + error.what());
+    return out;
+  }
+}
+
 UnitWork::Outcome UnitWork::solve_and_store(int run, bool in_chain, std::optional<CarriedState>& carried,
                                             std::string& problem) {
   if (!load_predecessor(run, carried, problem)) return Outcome::failed;
   hooks_.begins(run);
-  SolvedRun solved =
-      solve_run(plan_, run, carried ? &*carried : nullptr, keep_documents_ || in_chain, registry_, hooks_.go_on);
+  SolvedRun solved = solve_guarded(run, carried ? &*carried : nullptr, keep_documents_ || in_chain);
   if (solved.stopped) return Outcome::stopped;
+  if (!solved.problem.empty()) {
+    problem = solved.problem;
+    return Outcome::failed;
+  }
   const Status status = folder_.store(solved.record, solved.document);
   if (!status.ok()) {
     problem = status.text;

@@ -7,11 +7,13 @@
 #include "core/interfaces/registry.hpp"
 #include "study/store/claim.hpp"
 #include "study/store/folder.hpp"
+#include "study/workers/run_solver.hpp"
 
 namespace bowstring::study {
 
-/// Whether a record has all that the study asks of it: every quantity, as many repeats, the document where it is kept.
-bool has_all(const RunRecord& record, const StudyFile& study, bool keep_documents);
+/// Whether a stored record is what the plan's run would come to: with every quantity, as many repeats, the document
+/// where it is kept, ended by no shorter time limit, and begun where its predecessor ended if that converged.
+bool is_complete(const Plan& plan, const Folder& folder, int run, const RunRecord& record, bool keep_documents);
 
 /// Solves what of a unit is not there yet, and stores it.
 class UnitWork {
@@ -35,7 +37,9 @@ class UnitWork {
   Outcome carry_out(const Unit& unit, bool wait, std::string& problem);
 
  private:
+  bool take_claim(const std::string& hash, bool wait);
   Outcome take_step(const Unit& unit, std::size_t place, std::optional<CarriedState>& carried, std::string& problem);
+  SolvedRun solve_guarded(int run, const CarriedState* carried, bool with_document);
   Outcome solve_and_store(int run, bool in_chain, std::optional<CarriedState>& carried, std::string& problem);
   bool load_predecessor(int run, std::optional<CarriedState>& carried, std::string& problem) const;
 

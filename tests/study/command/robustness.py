@@ -1,6 +1,7 @@
 """A study that is killed, that meets a full disk or a folder it may not write, whose files are damaged, that two
 commands solve at once, whose workers die: nothing is lost, nothing is half written, and the figures are the same."""
 
+import hashlib
 import json
 import os
 import pathlib
@@ -208,6 +209,7 @@ def test_read_only_folder(command):
             return
         code, _, error = command.run(study, out, "--jobs", "1")
         require_equal(code, 2, error)
+        require_equal(command.run(study, out, "--check")[0], 1, "--check writes nothing")
         require(f"cannot write in '{out}" in error and error.count("\n") >= 1, error)
     require_equal(len(os.listdir(out / "runs")), len(before) - 1, "files")
     require_equal(command.run(study, out, "--jobs", "1")[0], 0, "once it can be written")
@@ -269,6 +271,155 @@ on = "iliac"
     require_equal(by_how["lingers"], {("failed", "it took longer than its time limit")}, "lingers")
 
 
+def lingering_study(command, name, limit):
+    """Two runs, of which one never ends by itself."""
+    command.write(f"{name}-scene.toml", f"""
+schema = 1
+base = "{command.scene()}"
+[[energy]]
+type = "test-leaving"
+on = "iliac"
+""")
+    return command.write(f"{name}.toml", f"""
+schema = 1
+base = "{name}-scene.toml"
+{limit}
+[axes]
+how = {{ path = "energy.test-leaving.how", values = ["stays", "lingers"] }}
+""")
+
+
+def test_interrupt_of_a_run_that_does_not_come_back(command, fixtures):
+    out = command.folder / "deaf"
+    process = command.start(lingering_study(command, "deaf", ""), out, "--jobs", "2", "--plugin-path", fixtures)
+    wait_for_records(process, out, 1)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=120)
+    require_equal(process.returncode, 1, error)
+    require("stopped: 1 of 2 runs there" in error, error)
+
+
+def wait_for_worker(process):
+    children = pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children")
+    while process.poll() is None and not children.read_text():
+        pass
+
+
+def test_interrupt_while_another_command_has_the_run(command, fixtures):
+    study, out = lingering_study(command, "waiting", ""), command.folder / "waiting"
+    options = ("--jobs", "1", "--plugin-path", fixtures)
+    first = command.start(study, out, *options)
+    wait_for_records(first, out, 1)
+    second = command.start(study, out, *options)
+    wait_for_worker(second)
+    second.send_signal(signal.SIGINT)
+    second.communicate(timeout=120)
+    require_equal(second.returncode, 1, "the second command")
+    require(first.poll() is None, "the first command goes on")
+    first.kill()
+    first.communicate()
+
+
+def test_a_longer_time_limit_tries_again(command, fixtures):
+    out, options = command.folder / "limit", ("--jobs", "1", "--plugin-path", fixtures)
+    require_equal(command.run(lingering_study(command, "limit", 'time-limit = "0.5 s"'), out, *options)[0], 0, "short")
+    ended = next(file for file in records(out) if json.loads(file.read_text())["status"] == "failed")
+    require_equal(json.loads(ended.read_text())["time_limit"], 0.5, "the limit that ended it")
+    stamp = ended.stat().st_mtime_ns
+    require_equal(command.run(lingering_study(command, "limit", 'time-limit = "0.4 s"'), out, *options)[0], 0, "shorter")
+    require_equal(ended.stat().st_mtime_ns, stamp, "a run that a longer limit has ended")
+    require_equal(command.run(lingering_study(command, "limit", 'time-limit = "0.6 s"'), out, *options)[0], 0, "longer")
+    require_equal(json.loads(ended.read_text())["time_limit"], 0.6, "the limit that ended it then")
+
+
+def rewrite(record, **changes):
+    """Another content of a record, with the digest that belongs to it."""
+    body = record.read_text()
+    body = body[:body.index(',\n "digest"')]
+    text = json.dumps({**json.loads(body + "\n}"), **changes}, indent=1)
+    text = text[:text.rindex("\n")]
+    record.write_text(f'{text},\n "digest": "{hashlib.sha256(text.encode()).hexdigest()}"\n}}\n')
+
+
+def test_chain_after_a_predecessor_that_failed(command):
+    """Its successor starts from cold, says so, and is solved again when the predecessor converges after all."""
+    study = command.write("chain.toml", f"""
+schema = 1
+base = "{command.scene()}"
+warm-along = "T"
+[axes]
+T = {{ path = "energy.axial-tension.tension", values = ["1 N", "2 N", "3 N"] }}
+[set]
+"vessel.iliac.geometry.nodes" = 20
+""")
+    out = undisturbed(command, study, "chain", "--jobs", "1")
+    before = figures(out)
+    runs = [json.loads((out / "study.lock.json").read_text())["runs"][i]["hash"] for i in range(3)]
+    files = [out / "runs" / f"{run}.json" for run in runs]
+    whole = files[0].read_text()
+    rewrite(files[0], status="failed", reason="a test", document_sha256=None, seconds={
+        "load": 0.0, "setup": 0.0, "solve": [], "total": 0.0})
+    files[1].unlink()
+    require_equal(command.run(study, out, "--jobs", "1")[0], 0, "after a failed predecessor")
+    require_equal(json.loads(files[1].read_text())["predecessor"], None, "it started from cold")
+    require(figures(out) != before, "a start from cold leaves no trace")
+    files[0].write_text(whole)
+    require_equal(command.run(study, out, "--check")[0], 1, "--check")
+    require_equal(command.run(study, out, "--jobs", "1")[0], 0, "after a predecessor that converged")
+    require_equal(json.loads(files[1].read_text())["predecessor"], runs[0], "it started from its result")
+    require_equal(figures(out), before, "figures")
+
+
+def test_files_that_change_on_the_way(command, fixtures):
+    """What is solved after that is no result of the study that was read."""
+    study, out = lingering_study(command, "edited", 'time-limit = "2 s"'), command.folder / "edited"
+    study.write_text(study.read_text().replace('"stays", "lingers"', '"lingers", "stays"'))
+    process = command.start(study, out, "--jobs", "1", "--plugin-path", fixtures)
+    wait_for_lock_file(process, out)
+    scene = command.folder / "edited-scene.toml"
+    scene.write_text(scene.read_text() + "stiffness = 1.0\n")
+    _, error = process.communicate(timeout=120)
+    require_equal(process.returncode, 2, error)
+    require("files of the run how = " in error and "have changed since the study was read" in error, error)
+
+
+def wait_for_lock_file(process, out):
+    """Until the study has been read, which its lock file shows."""
+    while process.poll() is None and not (out / "study.lock.json").exists():
+        pass
+
+
+def test_reasons_do_not_tell_the_folder(command):
+    study = command.write("reasons.toml", f"""
+schema = 1
+base = "{command.scene()}"
+[axes]
+shape = {{ path = "vessel.iliac.geometry", values = [{{ type = "csv", file = "nowhere.csv" }}] }}
+""")
+    out = command.folder / "reasons"
+    code, told, error = command.run(study, out, "--jobs", "1")
+    require_equal(code, 0, told + error)
+    require("nowhere.csv: cannot be read" in rows(out)[0]["reason"], str(rows(out)))
+    require(str(command.folder) not in (out / "results.csv").read_text(), str(rows(out)))
+
+
+def test_a_quantity_more_on_a_part_of_the_runs(command):
+    """Runs that lack it are missing, and no table is written with holes."""
+    out = command.folder / "more"
+    undisturbed(command, small_study(command, "more"), "more", "--jobs", "1", "--keep", "summary")
+    table = (out / "results.csv").read_text()
+    study = small_study(command, "more")
+    study.write_text(study.read_text().replace("[axes]", 'quantities = ["solver.iterations"]\n[axes]'))
+    require_equal(command.run(study, out, "--check")[0], 1, "--check of records that lack a quantity")
+    options = ("--jobs", "1", "--keep", "summary", "--shard")
+    require_equal(command.run(study, out, *options, "1/2")[0], 0, "one part")
+    require_equal((out / "results.csv").read_text(), table, "the table before the last part")
+    require_equal(command.run(study, out, *options, "2/2")[0], 0, "the other part")
+    with open(out / "results.csv", encoding="utf-8") as stream:
+        require_equal(stream.readline().split(",").count("iterations"), 1, "columns of iterations")
+    require(all(row["iterations"] for row in rows(out)), str(rows(out)))
+
+
 def test_another_plugin_solves_again_what_names_it(command, build):
     """A copy of the command, with a list of plugins of its own, in which one library is exchanged."""
     place = command.folder / "exchanged"
@@ -310,6 +461,7 @@ def main():
     bowstring, source_root, build, library = (sys.argv[1:] + [None])[:4]
     build = pathlib.Path(build).resolve()
     library = library and str(pathlib.Path(library).resolve())
+    fixtures = str(build / "tests" / "plugins" / "fixtures")
     only = os.environ.get("BOWSTRING_TEST_ONLY", "")
     with tempfile.TemporaryDirectory() as folder:
         command = Command(bowstring, source_root, folder)
@@ -323,7 +475,14 @@ def main():
             (test_damaged_document, ()),
             (test_full_disk, (library,)),
             (test_read_only_folder, ()),
-            (test_workers_that_die, (str(build / "tests" / "plugins" / "fixtures"),)),
+            (test_workers_that_die, (fixtures,)),
+            (test_interrupt_of_a_run_that_does_not_come_back, (fixtures,)),
+            (test_interrupt_while_another_command_has_the_run, (fixtures,)),
+            (test_a_longer_time_limit_tries_again, (fixtures,)),
+            (test_chain_after_a_predecessor_that_failed, ()),
+            (test_files_that_change_on_the_way, (fixtures,)),
+            (test_reasons_do_not_tell_the_folder, ()),
+            (test_a_quantity_more_on_a_part_of_the_runs, ()),
             (test_another_plugin_solves_again_what_names_it, (build,)),
         ]
         for test, arguments in tests:

@@ -46,7 +46,8 @@ finest = "Q"
       "a value of the axis\n"
       "study.toml:8:64: 'values' of axis 'E' is an empty list; expected a list of values; write values = [first, "
       "second]\n"
-      "study.toml:10:68: 'count' of axis 'M' is whole number 1; expected a whole number of at least 2; write count = "
+      "study.toml:10:68: 'count' of axis 'M' is whole number 1; expected a whole number from 2 to 1000000; write count "
+      "= "
       "5\n"
       "study.toml:11:21: axis 'F' has both 'values' and 'log'; expected one of: values, linear, log, alternatives, "
       "base, sobol, latin-hypercube; leave one of them\n"
@@ -135,6 +136,79 @@ TEST_CASE("a base that cannot be read is told once, not for every run") {
                    "schema = 1\nbase = \"rood.toml\"\n");
   CHECK(study.errors() ==
         "rood.toml: cannot read the file (No such file or directory); expected a composition in TOML; check the path");
+}
+
+TEST_CASE("a value of a range that no run can take, wherever it is in the range; of a sample it makes refused runs") {
+  const auto study = [](const std::string& form) {
+    return SmallStudy("[axes]\nA = { " + form + R"( }
+N = { path = "wire.rod.geometry.nodes", values = [10, 20] }
+)");
+  };
+  const std::string path = R"(path = "energy.wire-bending.bending-stiffness", )";
+  for (const char* range : {R"(["-2 N mm^2", "1 N mm^2"])", R"(["1 N mm^2", "-2 N mm^2"])"}) {
+    CHECK(study(path + "linear = " + range + ", count = 3").errors().find("is -2 N mm^2, out of bounds") !=
+          std::string::npos);
+  }
+  const std::string stiffness = "{ " + path + R"(linear = ["-1 N mm^2", "9 N mm^2"] })";
+  const study::Plan plan = study("sobol = { EI = " + stiffness + " }, count = 32").plan();
+  int refused = 0;
+  for (const study::PlannedRun& run : plan.runs) refused += run.refusal.empty() ? 0 : 1;
+  CHECK(refused > 0);
+  CHECK(refused < 32);
+}
+
+TEST_CASE("more combinations than can be walked are told before they are made") {
+  SmallStudy study(R"(exclude = [{ A = "1 N mm^2" }]
+[axes]
+A = { path = "energy.wire-bending.bending-stiffness", linear = ["1 N mm^2", "2 N mm^2"], count = 1000000 }
+N = { path = "wire.rod.geometry.nodes", linear = [3, 1000000], count = 500000 }
+)");
+  CHECK(
+      study.errors() ==
+      "study.toml: the axes make 5e+11 combinations; expected between 1 and 1000000 runs; shorten the axes, or take a "
+      "sample");
+}
+
+TEST_CASE("one number twice, two axes of compositions, a column that is taken") {
+  SmallStudy study(R"(quantities = ["quantities.contact_count", { path = "contacts.force_N", reduce = "count" }]
+[axes]
+A = { path = "energy.wire-bending.bending-stiffness", values = ["1 N mm^2", "0.000001 N m^2"] }
+scene = { base = ["rod.toml"] }
+other = { base = ["rod.toml"] }
+contact_count = { path = "solver.type", values = ["interior-point", "active-set"] }
+)");
+  CHECK(
+      study.errors() ==
+      "study.toml:5:64: axis 'A' has a value twice; expected values that differ; leave one of them\n"
+      "study.toml:8:1: axis 'contact_count' has the column 'contact_count', which is taken; expected a name of its "
+      "own; rename the axis\n"
+      "study.toml:7:1: axes 'scene' and 'other' both name the composition of a run; expected one composition for each "
+      "run; make one axis of them, or leave their combinations out");
+  SmallStudy apart(R"(combine = "one-at-a-time"
+[axes]
+scene = { alternatives = { same = {}, other = { base = "rod.toml" } } }
+again = { alternatives = { same = {}, other = { base = "rod.toml" } } }
+)");
+  CHECK(apart.errors() == "");
+}
+
+TEST_CASE("a reference whose finest mesh is excluded, or that holds an axis which is walked with its own") {
+  const std::string axes = R"([axes]
+N = { path = "wire.rod.geometry.nodes", values = [10, 20, 40] }
+A = { path = "energy.wire-bending.bending-stiffness", values = ["1 N mm^2", "2 N mm^2", "3 N mm^2"] }
+[reference]
+)";
+  CHECK(
+      SmallStudy("exclude = [{ N = 40, A = \"1 N mm^2\" }]\n" + axes + "finest = \"N\"\nat = { A = \"1 N mm^2\" }\n")
+          .errors() ==
+      "study.toml:7:2: the reference (the run with N = 40, A = 1 N mm^2) is not reached: no run is there; expected at "
+      "least one run of the study that can be solved; take the exclusion back, or hold other axes under 'at'");
+  CHECK(SmallStudy("exclude = [{ N = 40 }]\n" + axes + "richardson = \"N\"\n").errors().find("is not reached") !=
+        std::string::npos);
+  CHECK(
+      SmallStudy("zipped = [[\"N\", \"A\"]]\n" + axes + "finest = \"N\"\nat = { A = \"1 N mm^2\" }\n").errors() ==
+      "study.toml:9:8: 'at' of [reference] holds 'A', along which the reference is looked for; expected axes that are "
+      "not walked with it; remove it");
 }
 
 }  // namespace bowstring

@@ -56,4 +56,26 @@ A = { path = "energy.wire-bending.bending-stiffness", values = ["5 N mm^2", "2 N
   CHECK(hashes(longer)[2] != hashes(warm)[2]);
 }
 
+TEST_CASE("later states count with the files and plugins that they alone name") {
+  const auto hash_with = [](const std::string& points) {
+    SmallStudy study(std::string("quantities = [\"energy.total\"]\n") + axes,
+                     "schema = 1\nbase = \"steps.toml\"\n");
+    study.folder().write("points.csv", "x_mm,y_mm,z_mm\n0,0,0\n50,0,0\n" + points + "\n");
+    study.folder().write("steps.toml", R"(schema = 1
+base = "rod.toml"
+[[step]]
+name = "straight"
+[[step]]
+name = "other solver"
+"solver.type" = "active-set"
+"wire.rod.geometry" = { type = "csv", file = "points.csv" }
+)");
+    const study::Plan plan = study.plan();
+    CHECK(plan.libraries.count("solver/active-set") == 1);
+    return plan.runs.front().hash;
+  };
+  CHECK(hash_with("100,0,0") == hash_with("100,0,0"));
+  CHECK(hash_with("100,0,0") != hash_with("101,0,0"));
+}
+
 }  // namespace bowstring

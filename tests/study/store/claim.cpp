@@ -36,12 +36,12 @@ TEST_CASE("a run belongs to one process at a time, and no claim outlives its pro
   Claims claims;
   REQUIRE(claims.open(file).ok());
   const auto takes = [&](const std::string& hash) {
-    return in_another_process(file, [&](Claims& theirs) { return theirs.take(hash, false) ? 1 : 0; });
+    return in_another_process(file, [&](Claims& theirs) { return theirs.take(hash) ? 1 : 0; });
   };
-  REQUIRE(claims.take(first, false));
+  REQUIRE(claims.take(first));
   CHECK(takes(first) == 0);
   CHECK(takes(second) == 1);
-  CHECK(claims.take(second, false));  // the other process is gone
+  CHECK(claims.take(second));  // the other process is gone
   claims.leave(first);
   CHECK(takes(first) == 1);
   claims.take_folder();

@@ -14,7 +14,7 @@ namespace {
 
 std::string check(const Folder& folder, const std::string& study, const std::string& root) {
   std::vector<InputError> errors;
-  folder.check(study, errors);
+  folder.check(study, true, errors);
   std::string out;
   for (const InputError& error : errors) out += (out.empty() ? "" : "\n") + error.text();
   return replaced(out, root, "DIR");
@@ -97,7 +97,7 @@ TEST_CASE("what killed writers leave is removed, what others write is not") {
   Claims ours, theirs;
   REQUIRE(ours.open(folder.file("claims.lock")).ok());
   REQUIRE(theirs.open(folder.file("claims.lock")).ok());
-  REQUIRE(theirs.take(std::string(64, 'b'), false));
+  REQUIRE(theirs.take(std::string(64, 'b')));
   folder.sweep(ours);
   CHECK(!std::filesystem::exists(root.path() + "/" + left));
   CHECK(std::filesystem::exists(root.path() + "/" + busy));
