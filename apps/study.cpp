@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <functional>
@@ -148,6 +150,16 @@ void print_counts(const Plan& plan, const Collected& collected) {
               text.c_str());
 }
 
+/// A path that leads nowhere shows when all is solved: then the study file can be mended without solving again.
+void warn_of_missing(const Collected& collected) {
+  const auto known = [](double value) { return std::isfinite(value); };
+  for (const study::QuantityData& quantity : collected.data.quantities) {
+    if (std::any_of(quantity.value.begin(), quantity.value.end(), known)) continue;
+    std::fprintf(stderr, "warning: no run has a value of '%s' (%s); is the path right?\n", quantity.column.c_str(),
+                 quantity.path.c_str());
+  }
+}
+
 /// results.csv and report.html; "" or why not.
 Status write_tables(const Plan& plan, const Folder& folder, const Collected& collected) {
   const Status status = write_file(folder.file("results.csv"), study::results_csv(collected));
@@ -156,6 +168,7 @@ Status write_tables(const Plan& plan, const Folder& folder, const Collected& col
   const study::Shapes shapes = study::collect_shapes(plan, collected, folder);
   const std::string page = study::report_page(study::report_json(collected.data, analysis, shapes));
   print_counts(plan, collected);
+  warn_of_missing(collected);
   for (const study::Headline& headline : analysis.headlines) std::printf("  %s\n", headline.text.c_str());
   return write_file(folder.file("report.html"), page);
 }

@@ -39,7 +39,11 @@ const std::vector<std::string>& reducible_keys() {
 /// What [reduced] says instead: axes and overrides one by one, everything else whole.
 void reduce(Node& root, Report& report) {
   const Entry* entry = root.find("reduced");
-  if (entry == nullptr) return;
+  if (entry == nullptr) {
+    report.error(root.position, "the study has no [reduced], which --reduced asks for", "a table [reduced]",
+                 "add [reduced.axes] with the axes that are shorter, or leave --reduced out");
+    return;
+  }
   const Node table = entry->value;
   if (!check_is_table(table, "'reduced'", "write [reduced.axes] with the axes that are shorter", report)) return;
   check_keys(table, "[reduced]", reducible_keys(), "remove it", report);
@@ -443,6 +447,7 @@ StudyFile read_study(const std::string& file, bool reduced, std::vector<InputErr
     } else {
       if (reduced) reduce(*root, report);
       study = StudyReader(file, *root, report).read();
+      if (reduced) study.name += "-reduced";  // another study: one folder cannot hold the results of both
     }
   }
   errors = report.sorted();

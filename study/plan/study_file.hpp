@@ -65,7 +65,7 @@ struct Exclusion {
 /// A study as its file states it, with everything checked that needs no composition.
 struct StudyFile {
   std::string file;  ///< as the user gave it
-  std::string name;  ///< its file's name without extension
+  std::string name;  ///< its file's name without extension; of the reduced form with "-reduced" behind it
   std::string title;
   std::string base;  ///< composition; "" where the alternatives of an axis name theirs
   std::vector<Override> set;

@@ -211,4 +211,12 @@ A = { path = "energy.wire-bending.bending-stiffness", values = ["1 N mm^2", "2 N
       "not walked with it; remove it");
 }
 
+TEST_CASE("a reduced form that the file does not have") {
+  SmallStudy study("[axes]\nN = { path = \"wire.rod.geometry.nodes\", values = [10, 20] }\n");
+  std::vector<InputError> errors;
+  study::read_study(study.file(), true, errors);
+  REQUIRE(errors.size() == 1);
+  CHECK(errors[0].found == "the study has no [reduced], which --reduced asks for");
+}
+
 }  // namespace bowstring
