@@ -59,10 +59,14 @@ function logTicks(low, high) {
   return ticks.filter((tick) => tick >= low && tick <= high);
 }
 
-function logTickText(value) {
-  const exponent = Math.log10(value);
-  if (value >= 1e-2 && value < 1e4) return numberText(value, 3);
-  const whole = Math.floor(exponent + 1e-9);
+/** Ticks of one scale are all written in the same way: as decimals where none gets long, or else as powers of ten. */
+function logTickWords(ticks) {
+  const [low, high] = extent(ticks);
+  return low >= 1e-3 && high < 1e5 ? (value) => numberText(value, 3) : powerTickText;
+}
+
+function powerTickText(value) {
+  const whole = Math.floor(Math.log10(value) + 1e-9);
   const digits = value / 10 ** whole;
   return digits < 1.001 ? powerText(whole) : `${numberText(digits, 2)}·${powerText(whole)}`;
 }
@@ -78,7 +82,7 @@ function logScale(title, values, ticks = null) {
     afterBuildTicks: (scale) => {
       scale.ticks = places.map((value) => ({ value }));
     },
-    ticks: { callback: logTickText, maxRotation: 0 },
+    ticks: { callback: logTickWords(places), maxRotation: 0 },
   });
 }
 
@@ -110,11 +114,11 @@ function axisScale(axis, places, isLogarithmic = isSpreadByFactors(places.filter
       afterBuildTicks: (scale) => {
         scale.ticks = range(count).map((value) => ({ value }));
       },
-      ticks: { callback: (value) => shortened(axes[axis].labels[value] ?? "", 18), maxTicksLimit: 40 },
+      ticks: { callback: (value) => shortened(unitText(axes[axis].labels[value] ?? ""), 18), maxTicksLimit: 40 },
     });
   }
   const known = places.filter(isKnown);
-  if (!isLogarithmic) return linearScale(axisTitle(axis));
+  if (!isLogarithmic) return linearScale(axisTitle(axis), { bounds: "data", ticks: { includeBounds: false } });
   const numbers = [...new Set(known)].sort((a, b) => a - b);
   return logScale(axisTitle(axis), known, numbers.length <= 12 ? numbers : null);
 }
