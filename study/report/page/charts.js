@@ -95,6 +95,33 @@ function linearScale(title, more = {}) {
   });
 }
 
+/** A linear scale that ends where its numbers do, as an axis has no reason to show 0. */
+function closeScale(title, numbers) {
+  const [low, high] = extent(numbers);
+  const air = 0.04 * (high - low || Math.abs(high) || 1);
+  const [min, max] = [low - air, high + air];
+  const ticks = roundNumbers(min, max);
+  return linearScale(title, {
+    min,
+    max,
+    grace: 0,
+    afterBuildTicks: (scale) => {
+      scale.ticks = ticks.map((value) => ({ value }));
+    },
+    ticks: { maxRotation: 0 },
+  });
+}
+
+/** Four to ten of them between two numbers. */
+function roundNumbers(low, high) {
+  const decade = 10 ** Math.floor(Math.log10((high - low) / 4));
+  const step = decade * [5, 2, 1].find((factor) => 4 * factor * decade <= high - low);
+  const count = (place) => Math.round(place * 1e6) / 1e6;
+  return range(Math.floor(count(high / step)) - Math.ceil(count(low / step)) + 1).map((index) =>
+    Number(((Math.ceil(count(low / step)) + index) * step).toPrecision(12)),
+  );
+}
+
 /** Whether positive numbers lie more evenly on a logarithmic scale: by where their median is. */
 function isSpreadByFactors(numbers) {
   const [low, high] = extent(numbers);
@@ -118,7 +145,7 @@ function axisScale(axis, places, isLogarithmic = isSpreadByFactors(places.filter
     });
   }
   const known = places.filter(isKnown);
-  if (!isLogarithmic) return linearScale(axisTitle(axis), { bounds: "data", ticks: { includeBounds: false } });
+  if (!isLogarithmic && known.length) return closeScale(axisTitle(axis), known);
   const numbers = [...new Set(known)].sort((a, b) => a - b);
   return logScale(axisTitle(axis), known, numbers.length <= 12 ? numbers : null);
 }

@@ -46,9 +46,10 @@ function familyName(members, words, numeric) {
   if (members.length === 1) return lineName(members[0]);
   const labelOf = (line, place) => unitText(axes[report.line_axes[place]].labels[lines[line].choice[place]] ?? "–");
   const ends = (place) => {
-    const numbers = axes[report.line_axes[place]].numbers;
-    const sorted = [...members].sort((a, b) => numbers[lines[a].choice[place]] - numbers[lines[b].choice[place]]);
-    return [...new Set([labelOf(sorted[0], place), labelOf(sorted.at(-1), place)])].join(" … ");
+    const { numbers, unit } = axes[report.line_axes[place]];
+    const [low, high] = extent(members.map((line) => numbers[lines[line].choice[place]]).filter(isKnown));
+    if (low > high) return unknownText;
+    return `${low === high ? "" : `${numberText(low)} … `}${numberText(high)} ${unitText(unit)}`.trim();
   };
   return [
     ...words.map((place) => labelOf(members[0], place)),

@@ -118,7 +118,7 @@ function distributionTables() {
     tableFrame(
       table(
         ["runs", "mean", "standard deviation", ...quantileColumns],
-        [[own.count, own.mean, own.deviation, ...own.quantiles.map(([, value]) => value)]],
+        [[own.count, ...[own.mean, own.deviation, ...own.quantiles.map(([, one]) => one)].map((one) => roundedTo(5, one))]],
       ),
       "Quantiles",
     ),

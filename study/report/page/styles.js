@@ -41,7 +41,7 @@ function lineStyle(line) {
   if (line < 0) return { colour: pageColour("muted"), marker: "circle", dash: [] };
   const family = familyOfLine[line];
   const members = families[family].lines;
-  const pale = members.length > 1 ? 0.65 * (1 - members.indexOf(line) / (members.length - 1)) : 0;
+  const pale = members.length > 1 ? 0.55 * (1 - members.indexOf(line) / (members.length - 1)) : 0;
   const style = styleOf(family);
   return { ...style, colour: hexadecimal(between(channels(style.colour), channels(pageColour("ground")), pale)) };
 }
