@@ -99,7 +99,7 @@ function swatch(line) {
       y2: 7,
       stroke: colour,
       "stroke-width": 2,
-      "stroke-dasharray": dash.join(" "),
+      "stroke-dasharray": recommended.has(line) ? "" : dash.join(" "), // as it is drawn
     }),
     markerShape(marker, colour),
   );
