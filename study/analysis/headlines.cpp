@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <regex>
 
 #include "core/composition/nearest.hpp"
 #include "study/analysis/causes.hpp"
@@ -120,33 +121,67 @@ void add_distribution(const StudyData& data, const Analysis& analysis, std::vect
   out.push_back({HeadlineKind::effect, distribution_words(data, all[0]), listed(parts)});
 }
 
-/// Of a grid whose axes have too many numbers for effects: which of them the first quantity follows most.
-void add_sensitivity(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
-  std::map<int, std::vector<double>> sizes;  // axis → |elasticity| at its places
+/// What 1 % more of a parameter does at the places where it is known.
+struct Influence {
+  std::string parameter;
+  std::vector<double> elasticity;  // rising
+
+  double size() const {
+    std::vector<double> sizes;
+    for (const double one : elasticity) sizes.push_back(std::fabs(one));
+    std::sort(sizes.begin(), sizes.end());
+    return quantile(sizes, 0.5);
+  }
+  /// "raises", where it does so everywhere.
+  std::string verb() const {
+    return elasticity.front() > 0.0 ? "raises" : elasticity.back() < 0.0 ? "lowers" : "changes";
+  }
+  /// "T -0.2…-0.1 % at 4 places"
+  std::string range() const {
+    const std::string words = parameter + " " + percent_range(0.01 * elasticity.front(), 0.01 * elasticity.back());
+    return elasticity.size() == 1 ? words : words + " at " + std::to_string(elasticity.size()) + " places";
+  }
+};
+
+/// On the first quantity, the largest first.
+std::vector<Influence> find_influences(const StudyData& data, const Analysis& analysis) {
+  std::map<int, std::vector<double>> elasticities;  // axis → at its places
   for (const Sensitivity& place : analysis.sensitivities) {
     for (const SensitivityEntry& entry : place.entries) {
-      if (place.quantity == 0 && std::isfinite(entry.elasticity))
-        sizes[entry.axis].push_back(std::fabs(entry.elasticity));
+      if (place.quantity == 0 && std::isfinite(entry.elasticity)) elasticities[entry.axis].push_back(entry.elasticity);
     }
   }
-  if (sizes.empty()) return;
-  std::vector<std::pair<double, int>> medians;
-  for (auto& [axis, values] : sizes) {
+  std::vector<Influence> out;
+  for (auto& [axis, values] : elasticities) {
     std::sort(values.begin(), values.end());
-    medians.emplace_back(quantile(values, 0.5), axis);
+    out.push_back({data.axes[at(axis)].name, values});
   }
-  std::stable_sort(medians.begin(), medians.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-  const auto name = [&](int axis) { return data.axes[at(axis)].name; };
-  std::string text = "1 % more of " + name(medians[0].second) + " changes " + data.quantities[0].column + " by " +
-                     percent(0.01 * medians[0].first);
-  if (medians.size() > 1) text += ", of " + name(medians[1].second) + " by " + percent(0.01 * medians[1].first);
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Influence& one, const Influence& other) { return one.size() > other.size(); });
+  return out;
+}
+
+/// Of numbers that have no effects: which of them the first quantity follows most.
+void add_sensitivity(const StudyData& data, const Analysis& analysis, std::vector<Headline>& out) {
+  const std::vector<Influence> influences = find_influences(data, analysis);
+  if (influences.empty()) return;
+  const Influence& first = influences[0];
+  std::string text = "1 % more of " + first.parameter + " " + first.verb() + " " + data.quantities[0].column + " by " +
+                     percent(0.01 * first.size());
+  if (influences.size() > 1) {
+    const Influence& second = influences[1];
+    text += ", of " + second.parameter + (second.verb() == first.verb() ? "" : " " + second.verb() + " it") + " by " +
+            percent(0.01 * second.size());
+  }
   std::vector<std::string> ranges;
-  for (const auto& [median, axis] : medians) {
-    const std::vector<double>& values = sizes[axis];
-    ranges.push_back(name(axis) + " " + percent_range(0.01 * values.front(), 0.01 * values.back()) + " at " +
-                     counted(static_cast<int>(values.size()), "place"));
+  bool one_place = true;
+  for (const Influence& influence : influences) {
+    ranges.push_back(influence.range());
+    one_place = one_place && influence.elasticity.size() == 1;
   }
-  out.push_back({HeadlineKind::effect, text, "Medians of the size over the places of the grid; " + listed(ranges)});
+  out.push_back({HeadlineKind::effect, text,
+                 (one_place ? "What 1 % more of each does: " : "Medians of the size over the places of the grid; ") +
+                     listed(ranges)});
 }
 
 void add_inseparable(const Analysis& analysis, std::vector<Headline>& out) {
@@ -167,25 +202,61 @@ std::vector<std::pair<std::string, int>> by_frequency(const std::map<std::string
   return out;
 }
 
+/// "an edge of # mm": reasons that differ in numbers alone are one.
+std::string without_numbers(const std::string& reason) {
+  static const std::regex number(R"(\d+(\.\d+)?(e[-+]?\d+)?)");
+  return std::regex_replace(reason, number, "#");
+}
+
+/// Counts reasons; those that are alike count as one, in the words of the first.
+class Reasons {
+ public:
+  void add(const std::string& reason) {
+    if (reason.empty()) return;
+    Group& group = groups_[without_numbers(reason)];
+    if (group.count == 0) group.first = reason;
+    group.several = group.several || group.first != reason;
+    ++group.count;
+  }
+
+  /// "4: edge 3 has folded; 2 like: …", the most frequent first.
+  std::string text() const {
+    std::vector<Group> groups;
+    for (const auto& [key, group] : groups_) groups.push_back(group);
+    std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) { return a.count > b.count; });
+    std::vector<std::string> parts;
+    for (const Group& group : groups)
+      parts.push_back(std::to_string(group.count) + (group.several ? " like: " : ": ") + group.first);
+    return listed(parts);
+  }
+
+ private:
+  struct Group {
+    std::string first;
+    int count = 0;
+    bool several = false;
+  };
+  std::map<std::string, Group> groups_;
+};
+
 void add_invalid(const StudyData& data, std::vector<Headline>& out) {
-  std::map<std::string, int> reasons;
+  Reasons reasons;
   int count = 0;
   for (const RunData& run : data.runs) {
     if (run.status != "invalid") continue;
     ++count;
-    ++reasons[run.reason];
+    reasons.add(run.reason);
   }
   if (count == 0) return;
   const int all = static_cast<int>(data.runs.size());
   std::string text =
       of_all(count, all) + " runs came out invalid: they satisfy every row and are no equilibrium of the curves";
-  std::vector<std::string> parts;
-  for (const auto& [reason, times] : by_frequency(reasons)) parts.push_back(std::to_string(times) + ": " + reason);
-  out.push_back({HeadlineKind::warning, text, "They count nowhere. " + listed(parts)});
+  out.push_back({HeadlineKind::warning, text, "They count nowhere. " + reasons.text()});
 }
 
 void add_failures(const StudyData& data, std::vector<Headline>& out) {
-  std::map<std::string, int> statuses, reasons;
+  std::map<std::string, int> statuses;
+  Reasons reasons;
   std::vector<Case> cases;
   int failures = 0;
   for (const RunData& run : data.runs) {
@@ -193,13 +264,12 @@ void add_failures(const StudyData& data, std::vector<Headline>& out) {
     if (run.converged()) continue;
     ++failures;
     ++statuses[run.status];
-    if (!run.reason.empty()) ++reasons[run.reason];
+    reasons.add(run.reason);
   }
   if (failures == 0) return;
   const int all = static_cast<int>(data.runs.size());
-  std::vector<std::string> kinds, why;
+  std::vector<std::string> kinds;
   for (const auto& [status, times] : by_frequency(statuses)) kinds.push_back(std::to_string(times) + " " + status);
-  for (const auto& [reason, times] : by_frequency(reasons)) why.push_back(std::to_string(times) + ": " + reason);
   std::vector<int> axes;
   for (int a : varying_axes(data)) {
     if (!sampled(data.axes[at(a)])) axes.push_back(a);
@@ -214,7 +284,7 @@ void add_failures(const StudyData& data, std::vector<Headline>& out) {
            std::to_string(cause.hits_with) + (cause.hits_with == 1 ? " fails" : " fail") + ", of " +
            std::to_string(cause.without) + " without " + std::to_string(cause.hits_without);
   }
-  out.push_back({HeadlineKind::failures, text, (cause.found() ? whole + ". " : "") + listed(why)});
+  out.push_back({HeadlineKind::failures, text, (cause.found() ? whole + ". " : "") + reasons.text()});
 }
 
 void keep_five(std::vector<Headline>& headlines) {

@@ -159,11 +159,12 @@ class Finder {
     } else {
       out += ": " + cost(all[0]);
     }
-    if (even > 2) out += "; " + std::to_string(even - 1) + " others are as fast";
+    const std::string as_fast = even > 2 ? "; " + std::to_string(even - 1) + " others are as fast" : "";
     if (slower != all.end() && slower->reaches) {
       add_clause(out, ", " + times(slower->seconds / all[0].seconds) + " faster than " + compared(*slower),
-                 headline_length);
+                 headline_length - characters(as_fast));
     }
+    out += as_fast;
     const std::string others = losers_words();
     if (!others.empty() && !add_clause(out, "; " + others, headline_length)) left_out_ = others + ". ";
     return out;

@@ -59,10 +59,14 @@ function logTicks(low, high) {
   return ticks.filter((tick) => tick >= low && tick <= high);
 }
 
-function logTickText(value) {
-  const exponent = Math.log10(value);
-  if (value >= 1e-2 && value < 1e4) return numberText(value, 3);
-  const whole = Math.floor(exponent + 1e-9);
+/** Ticks of one scale are all written in the same way: as decimals where none gets long, or else as powers of ten. */
+function logTickWords(ticks) {
+  const [low, high] = extent(ticks);
+  return low >= 1e-3 && high < 1e5 ? (value) => numberText(value, 3) : powerTickText;
+}
+
+function powerTickText(value) {
+  const whole = Math.floor(Math.log10(value) + 1e-9);
   const digits = value / 10 ** whole;
   return digits < 1.001 ? powerText(whole) : `${numberText(digits, 2)}·${powerText(whole)}`;
 }
@@ -78,7 +82,7 @@ function logScale(title, values, ticks = null) {
     afterBuildTicks: (scale) => {
       scale.ticks = places.map((value) => ({ value }));
     },
-    ticks: { callback: logTickText, maxRotation: 0 },
+    ticks: { callback: logTickWords(places), maxRotation: 0 },
   });
 }
 
@@ -89,6 +93,33 @@ function linearScale(title, more = {}) {
     ...more,
     ticks: { callback: (value) => numberText(value, 6), maxTicksLimit: 8, ...more.ticks },
   });
+}
+
+/** A linear scale that ends where its numbers do, as an axis has no reason to show 0. */
+function closeScale(title, numbers) {
+  const [low, high] = extent(numbers);
+  const air = 0.04 * (high - low || Math.abs(high) || 1);
+  const [min, max] = [low - air, high + air];
+  const ticks = roundNumbers(min, max);
+  return linearScale(title, {
+    min,
+    max,
+    grace: 0,
+    afterBuildTicks: (scale) => {
+      scale.ticks = ticks.map((value) => ({ value }));
+    },
+    ticks: { maxRotation: 0 },
+  });
+}
+
+/** Four to ten of them between two numbers. */
+function roundNumbers(low, high) {
+  const decade = 10 ** Math.floor(Math.log10((high - low) / 4));
+  const step = decade * [5, 2, 1].find((factor) => 4 * factor * decade <= high - low);
+  const count = (place) => Math.round(place * 1e6) / 1e6;
+  return range(Math.floor(count(high / step)) - Math.ceil(count(low / step)) + 1).map((index) =>
+    Number(((Math.ceil(count(low / step)) + index) * step).toPrecision(12)),
+  );
 }
 
 /** Whether positive numbers lie more evenly on a logarithmic scale: by where their median is. */
@@ -110,11 +141,11 @@ function axisScale(axis, places, isLogarithmic = isSpreadByFactors(places.filter
       afterBuildTicks: (scale) => {
         scale.ticks = range(count).map((value) => ({ value }));
       },
-      ticks: { callback: (value) => shortened(axes[axis].labels[value] ?? "", 18), maxTicksLimit: 40 },
+      ticks: { callback: (value) => shortened(unitText(axes[axis].labels[value] ?? ""), 18), maxTicksLimit: 40 },
     });
   }
   const known = places.filter(isKnown);
-  if (!isLogarithmic) return linearScale(axisTitle(axis));
+  if (!isLogarithmic && known.length) return closeScale(axisTitle(axis), known);
   const numbers = [...new Set(known)].sort((a, b) => a - b);
   return logScale(axisTitle(axis), known, numbers.length <= 12 ? numbers : null);
 }

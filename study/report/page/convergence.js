@@ -81,11 +81,11 @@ function orderTable(quantity) {
         ? `${numberText(fit.order_low, 3)} to ${numberText(fit.order_high, 3)}`
         : unknownText;
     return [
-      element("span", { class: "with-swatch" }, swatch(line), lines[line].label),
+      element("span", { class: "with-swatch" }, swatch(line), lineName(line)),
       element("span", { class: isBad ? "bad" : "good" }, readableVerdict[fit.verdict] ?? fit.verdict),
-      fit.order ?? null,
+      roundedTo(3, fit.order),
       interval,
-      fit.limit ?? null,
+      roundedTo(5, fit.limit),
       fit.text || "",
     ];
   };

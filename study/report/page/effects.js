@@ -4,7 +4,7 @@ const mostBars = 20;
 
 function effectName({ axis, from, to }) {
   const { name, labels } = axes[axis];
-  return `${name}: ${labels[from]} → ${labels[to]}`;
+  return `${name}: ${from < 0 ? "baseline" : unitText(labels[from])} → ${unitText(labels[to])}`;
 }
 
 function buildEffects(root) {
@@ -26,7 +26,8 @@ function effectWords({ axis, from, to, quantity, mean, relative, pairs }) {
   const change = `${signedText(mean, 3)}${unit ? ` ${unitText(unit)}` : ""}`;
   const share = isKnown(relative) ? ` (${signedText(100 * relative, 3)} % of its mean size)` : "";
   return (
-    `What changed ${quantityName(quantity)} most: ${name} from ${labels[from]} to ${labels[to]}, ` +
+    `What changed ${quantityName(quantity)} most: ` +
+    `${name} from ${from < 0 ? "the baseline" : unitText(labels[from])} to ${unitText(labels[to])}, ` +
     `by ${change}${share} on average over ${counted(pairs, "pair")}.`
   );
 }
@@ -46,7 +47,7 @@ function drawEffects(figure) {
     y: scaleOf("", {
       type: "category",
       title: { display: false },
-      ticks: { autoSkip: false, callback: (value) => barLabel(effectName(shown[value]), figure) },
+      ticks: { autoSkip: false, callback: (value) => changeLabel(effectName(shown[value]), figure) },
     }),
   };
   options.plugins.tooltip.callbacks = {
@@ -75,13 +76,14 @@ function drawEffects(figure) {
   );
   figure.showNote(
     "Whiskers: 95 % intervals of the mean.",
+    own.some(({ pairs }) => pairs < 2) ? "Bars without one are of a single pair." : "",
     own.length > shown.length ? `The ${shown.length} largest of ${own.length}; the others are in the data.` : "",
     isFiltered() ? "Effects are of all runs, whatever the filters." : "",
   );
   figure.showData(["axis", "from", "to", "pairs", "mean", "low", "high", "relative", "largest", "largest run"], () =>
     own.map((effect) => [
       axes[effect.axis].name,
-      axes[effect.axis].labels[effect.from],
+      axes[effect.axis].labels[effect.from] ?? "baseline",
       axes[effect.axis].labels[effect.to],
       effect.pairs,
       effect.mean,
@@ -103,9 +105,18 @@ function effectTip({ mean, low, high, pairs, relative, largest, largest_run: run
   ];
 }
 
+const labelLength = (figure) => Math.max(14, Math.floor(figure.box.clientWidth / 24));
+
+/** "contact: node-wise → segment-wise" in one line or, broken at the arrow, in two. */
+function changeLabel(text, figure) {
+  const length = labelLength(figure);
+  if (text.length <= length) return text;
+  return text.split(/ (?=→ )/).map((row) => shortened(row, length));
+}
+
 /** A label that leaves most of the width to the bars, in two lines at most. */
 function barLabel(text, figure) {
-  const length = Math.max(14, Math.floor(figure.box.clientWidth / 26));
+  const length = labelLength(figure);
   const rows = wrapped(text, length);
   return rows.length <= 2 ? rows : [shortened(rows[0], length), shortened(rows.slice(1).join(" "), length)];
 }

@@ -7,7 +7,7 @@ function buildEnergies(root) {
   return () => drawEnergies(figure);
 }
 
-/** Of each formulation the finest run shown, the recommended ones first; without formulations the first runs. */
+/** Of each formulation the finest run shown, the recommended ones first; without a mesh all runs. Of many, some. */
 function energyRuns() {
   const has = (run) => report.energies.some(({ values }) => isKnown(values[run]));
   const groups = shownGroups().sort((a, b) => byRecommendation(a.line, b.line));
@@ -15,23 +15,13 @@ function energyRuns() {
     const known = list.filter(has);
     return line >= 0 && report.along !== null ? known.slice(-1) : known;
   });
-  return { chosen: finest.slice(0, mostEnergyRuns), count: finest.length };
+  return { chosen: spreadOver(finest, mostEnergyRuns), count: finest.length };
 }
-
-/** The axes in which these runs differ: what tells them apart in few words. */
-const differingAxes = (list) =>
-  range(axes.length).filter((axis) => new Set(list.map((run) => runs.choice[axis][run])).size > 1);
 
 function drawEnergies(figure) {
   const { chosen, count } = energyRuns();
-  const differing = differingAxes(chosen);
-  const nameOf = (run) =>
-    differing.length
-      ? differing
-          .filter((axis) => runs.choice[axis][run] >= 0)
-          .map((axis) => alternativeOf(axis, run))
-          .join(", ")
-      : `run ${run}`;
+  const nameOf = namesOf(chosen);
+  const label = (run) => (converged(run) ? nameOf(run) : `✕ ${nameOf(run)}`);
   figure.showTitle("Energy by term");
   const options = baseOptions();
   Object.assign(options, { indexAxis: "y", interaction: { mode: "y", intersect: false } });
@@ -41,7 +31,7 @@ function drawEnergies(figure) {
       type: "category",
       stacked: true,
       title: { display: false },
-      ticks: { autoSkip: false, callback: (value) => barLabel(nameOf(chosen[value]), figure) },
+      ticks: { autoSkip: false, callback: (value) => barLabel(label(chosen[value]), figure) },
     }),
   };
   options.plugins.tooltip.callbacks = {
@@ -80,8 +70,10 @@ function drawEnergies(figure) {
   const failed = chosen.filter((run) => !converged(run));
   figure.showNote(
     which,
-    count > chosen.length ? `The first ${chosen.length} of ${wholeText(count)}.` : "",
-    failed.length ? `Not converged: ${failed.map((run) => `run ${run}`).join(", ")}.` : "",
+    count > chosen.length
+      ? `${chosen.length} of ${counted(count, "run")}, evenly spread; filters bring out the others.`
+      : "",
+    failed.length ? `✕ before a name: did not converge.` : "",
   );
   figure.showData(
     ["run", ...axes.map(({ column }) => column), ...report.energies.map(({ term }) => `${term} (N mm)`)],

@@ -1,13 +1,16 @@
 // Every run that did not converge, by status and reason.
 
-/** [{status, reason, list}] of these runs, the most frequent first. */
+/** [{status, reason, alike, list}] of these runs, the most frequent first; `alike`: reasons differ in their numbers. */
 function outcomes(list) {
-  return groupBy(list, (run) => `${runs.status[run]}\n${runs.reason[run] ?? ""}`).map(([, group]) => ({
+  return groupBy(list, (run) => `${runs.status[run]}\n${withoutNumbers(runs.reason[run] ?? "")}`).map(([, group]) => ({
     status: runs.status[group[0]],
     reason: runs.reason[group[0]] || "without a reason",
+    alike: new Set(group.map((run) => runs.reason[run])).size > 1,
     list: group,
   }));
 }
+
+const withoutNumbers = (text) => text.replace(/\d+(\.\d+)?(e[-+]?\d+)?/g, "#");
 
 const failedRuns = range(runCount).filter((run) => !converged(run));
 
@@ -22,10 +25,12 @@ function buildFailures(root) {
       tableFrame(
         table(
           ["runs", "status", "reason", "which"],
-          groups.map(({ status, reason, list }) => [
+          groups.map(({ status, reason, alike, list }) => [
             list.length,
             statusBadge(status),
-            reason,
+            alike
+              ? element("span", {}, reason, element("span", { class: "muted" }, ` (numbers of run ${list[0]})`))
+              : reason,
             element("span", {}, runLinks(list, 8)),
           ]),
           { class: "failures-table" },

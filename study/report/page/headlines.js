@@ -66,10 +66,17 @@ function headlineCard(headline, index) {
     "article",
     { class: `headline ${headline.kind}${index === 0 ? " first" : ""}` },
     element("p", { class: "kind" }, headlineNames[headline.kind] ?? headline.kind),
-    element("p", { class: headline.text.length > 110 ? "text long" : "text" }, headline.text),
+    element("p", { class: headline.text.length > 110 ? "text long" : "text" }, asOnPage(headline.text)),
   );
-  if (headline.detail) card.append(clamped(headline.detail));
+  if (headline.detail) card.append(clamped(asOnPage(headline.detail)));
   return card;
+}
+
+/** A finding with quantities and units as the page writes them: "peak displacement", "mm²". */
+function asOnPage(text) {
+  const byLength = range(quantities.length).sort((a, b) => quantities[b].column.length - quantities[a].column.length);
+  const named = byLength.reduce((out, one) => out.replaceAll(quantities[one].column, quantityName(one)), text);
+  return unitText(named);
 }
 
 /** A text that shows its first lines, and the rest when asked. */
@@ -91,7 +98,8 @@ function clamped(text) {
 function mainDiagram() {
   if (hasErrors(view.quantity)) return drawPrecision;
   if (report.along !== null && hasValues(view.quantity)) return (figure) => drawAgainst(figure, report.along);
-  const numeric = influentialAxes()[0] ?? axes.findIndex((_, axis) => isNumeric(axis));
+  if (sensitivitiesAtOnePlace()) return drawElasticities;
+  const numeric = influentialAxes()[0] ?? report.line_over ?? axes.findIndex((_, axis) => isNumeric(axis));
   if (numeric >= 0 && hasValues(view.quantity)) return (figure) => drawAgainst(figure, numeric);
   if (report.effects.length)
     return (figure) => {
@@ -170,7 +178,8 @@ function drawAgainst(figure, axis) {
     xOf,
     yOf: valueOfRun,
     log: {},
-    connected: axis !== null && axis === report.along,
+    connected: axis !== null && (axis === report.along || axis === report.line_over),
+    byX: true,
     scales: (points) => ({
       x:
         axis === null

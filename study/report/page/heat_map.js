@@ -154,14 +154,14 @@ function heatTable(cells, across, down, scale, shows) {
     element(
       "th",
       { scope: "col", title: label },
-      isDense ? (index % step ? "" : shortened(label, 14)) : shortened(label, 22),
+      isDense ? (index % step ? "" : shortened(unitText(label), 14)) : shortened(unitText(label), 22),
     ),
   );
   const rows = cells.map((row, index) =>
     element(
       "tr",
       {},
-      element("th", { scope: "row", title: axes[down].labels[index] }, shortened(axes[down].labels[index], 26)),
+      element("th", { scope: "row", title: axes[down].labels[index] }, shortened(unitText(axes[down].labels[index]), 26)),
       row.map((cell, column) =>
         heatCell(cell, scale, shows, isDense, `${axes[down].labels[index]}, ${axes[across].labels[column]}`),
       ),

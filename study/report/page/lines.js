@@ -10,11 +10,68 @@ const recommended = new Set(report.headlines.find(({ kind }) => kind === "recomm
 const isLineShown = (line) => lines[line].runs.some((run) => view.isShown[run]);
 const byRecommendation = (lineA, lineB) => recommended.has(lineB) - recommended.has(lineA);
 
+// So many lines have a colour each. Of more, those that differ in numbers alone are a family: of one colour, in shades,
+// and one entry of the legend.
+const mostColours = 8;
+const families = findFamilies(); // [{name, lines, by}]: lines by their numbers, `by` the axes of these
+const familyOfLine = new Int32Array(lines.length);
+families.forEach(({ lines: members }, family) =>
+  members.forEach((line) => {
+    familyOfLine[line] = family;
+  }),
+);
+
+function findFamilies() {
+  const alone = range(lines.length).map((line) => ({ name: lineName(line), lines: [line], by: [] }));
+  const places = range(report.line_axes.length);
+  const numeric = places.filter((place) => isNumeric(report.line_axes[place]));
+  if (lines.length <= mostColours || !numeric.length || baseline) return alone;
+  const words = places.filter((place) => !numeric.includes(place));
+  const numberOf = (line, place) => axes[report.line_axes[place]].numbers[lines[line].choice[place]] ?? -Infinity;
+  const compare = (a, b) => numeric.map((place) => numberOf(a, place) - numberOf(b, place)).find((sign) => sign) ?? 0;
+  const keyed = new Map();
+  for (const line of range(lines.length)) {
+    const key = words.map((place) => lines[line].choice[place]).join();
+    keyed.set(key, [...(keyed.get(key) ?? []), line]);
+  }
+  return [...keyed.values()].map((members) => {
+    const ordered = members.sort(compare);
+    const varying = numeric.filter((place) => new Set(ordered.map((line) => lines[line].choice[place])).size > 1);
+    return { name: familyName(ordered, words, numeric), lines: ordered, by: varying.map((at) => report.line_axes[at]) };
+  });
+}
+
+/** "planar, T = 1 N … 20 N" */
+function familyName(members, words, numeric) {
+  if (members.length === 1) return lineName(members[0]);
+  const labelOf = (line, place) => unitText(axes[report.line_axes[place]].labels[lines[line].choice[place]] ?? "–");
+  const ends = (place) => {
+    const { numbers, unit } = axes[report.line_axes[place]];
+    const [low, high] = extent(members.map((line) => numbers[lines[line].choice[place]]).filter(isKnown));
+    if (low > high) return unknownText;
+    return `${low === high ? "" : `${numberText(low)} … `}${numberText(high)} ${unitText(unit)}`.trim();
+  };
+  return [
+    ...words.map((place) => labelOf(members[0], place)),
+    ...numeric.map((place) => `${axes[report.line_axes[place]].name} = ${ends(place)}`),
+  ].join(", ");
+}
+
+/** What the shades of a family mean; "" where no formulation shown has any. */
+function shadeWords(series) {
+  const drawn = new Set(series.map(({ line }) => line));
+  const by = new Set(
+    families.filter(({ lines: members }) => members.some((line) => drawn.has(line))).flatMap((family) => family.by),
+  );
+  if (!by.size) return "";
+  return `Shades: ${[...by].map((axis) => axes[axis].name).join(", then ")}, the stronger the larger.`;
+}
+
 /** The runs shown as groups to be drawn: formulations, and last what belongs to none. */
 function shownGroups() {
   const groups = lines.map((line, index) => ({
     line: index,
-    label: line.label,
+    label: lineName(index),
     runs: line.runs.filter((run) => view.isShown[run]),
   }));
   const others = view.runs.filter((run) => lineOfRun[run] < 0);
@@ -94,7 +151,7 @@ function datasetsOf(series, connected) {
           ...common,
           label: group.label,
           data: group.points.filter(({ run }) => converged(run)),
-          showLine: connected,
+          showLine: connected && group.line >= 0,
           borderDash: isEmphasized ? [] : style.dash,
           borderWidth: isEmphasized ? 4 : isFaint ? 1 : 2,
           pointStyle: style.marker,
@@ -123,10 +180,11 @@ function datasetsOf(series, connected) {
     .filter((dataset) => dataset.data.length);
 }
 
-/** Draws runs as points. `scales(series)` gives the axes once it is known what they must hold; `tip(run)` the words. */
-function drawPoints(figure, { xOf, yOf, log, connected, scales, tip, plugins = [] }) {
+/** Draws runs as points, lines in the order of their runs or `byX`. `scales(series)` gives the axes once it is known what they must hold; `tip(run)` the words. */
+function drawPoints(figure, { xOf, yOf, log, connected, byX = false, scales, tip, plugins = [] }) {
   const { groups, note } = thinned(shownGroups());
   const { series, missing } = pointsOf(groups, xOf, yOf, log);
+  if (byX) series.forEach((group) => group.points.sort((a, b) => a.x - b.x));
   const points = series.flatMap((group) => group.points);
   const options = baseOptions();
   options.scales = scales(points);
@@ -144,6 +202,7 @@ function drawPoints(figure, { xOf, yOf, log, connected, scales, tip, plugins = [
   const atUpper = points.filter(({ rim }) => rim === "upper").length;
   figure.showNote(
     note,
+    shadeWords(series),
     series.some(({ line }) => recommended.has(line)) ? "Thick, ★: recommended." : "",
     atLower ? `At the lower rim: ${counted(atLower, "point")} of exactly 0.` : "",
     points.some(({ run }) => !converged(run)) ? "Crosses: runs that did not converge." : "",
@@ -178,11 +237,13 @@ const alongText = (run) =>
 
 /** Formulations as buttons that show and hide them, everywhere. */
 function drawLegend(holder) {
-  if (!lines.length) return;
+  if (lines.length < 2) return;
   // What only the legend hides stays in it, to be shown again.
-  const listed = range(lines.length).filter((line) => isLineShown(line) || view.hiddenLines.has(line));
+  const isListed = (line) => isLineShown(line) || view.hiddenLines.has(line);
+  const listed = families.filter((family) => family.lines.some(isListed));
   const count = holder.dataset.all ? listed.length : Math.min(listed.length, mostLegendEntries);
-  const ordered = listed.sort(byRecommendation);
+  const isRecommended = (family) => family.lines.some((line) => recommended.has(line));
+  const ordered = listed.sort((a, b) => isRecommended(b) - isRecommended(a));
   const entries = ordered.slice(0, count).map(legendEntry);
   if (count < listed.length) {
     const showAll = () => {
@@ -194,15 +255,21 @@ function drawLegend(holder) {
   holder.replaceChildren(...entries);
 }
 
-function legendEntry(line) {
-  const failures = lines[line].runs.filter((run) => !converged(run)).length;
-  const entry = button("", () => toggle(view.hiddenLines, line), {
+function legendEntry({ name, lines: members }) {
+  const failures = members.flatMap((line) => lines[line].runs).filter((run) => !converged(run)).length;
+  const isHidden = members.every((line) => view.hiddenLines.has(line));
+  const flip = () => {
+    for (const line of members) view.hiddenLines[isHidden ? "delete" : "add"](line);
+    changed();
+  };
+  const entry = button("", flip, {
     class: "entry",
-    "aria-pressed": String(!view.hiddenLines.has(line)),
-    title: `${lines[line].label}: show or hide`,
+    "aria-pressed": String(!isHidden),
+    title: `${name}: show or hide`,
   });
-  entry.append(swatch(line), element("span", { class: "name" }, shortened(lines[line].label, longestName)));
-  if (recommended.has(line)) entry.append(element("span", { class: "badge", title: "recommended" }, "★"));
+  entry.append(swatch(members.at(-1)), element("span", { class: "name" }, shortened(name, longestName)));
+  if (members.some((line) => recommended.has(line)))
+    entry.append(element("span", { class: "badge", title: "recommended" }, "★"));
   if (failures)
     entry.append(element("span", { class: "failures", title: "runs that did not converge" }, `✕ ${failures}`));
   return entry;

@@ -66,6 +66,49 @@ function describeRun(run, chosen = range(axes.length)) {
   return parts.join(", ");
 }
 
+/** The alternatives that most runs have, where every run differs from them in one axis at most; null where not so. */
+const baseline = findBaseline();
+
+function findBaseline() {
+  if (axes.length < 2) return null;
+  const usual = runs.choice.map((list) => groupBy(list, (alternative) => alternative)[0]?.[0]);
+  const differences = (run) => axes.filter((_, axis) => runs.choice[axis][run] !== usual[axis]).length;
+  return range(runCount).every((run) => differences(run) <= 1) ? usual : null;
+}
+
+/** What a choice of alternatives on some axes has that the baseline has not. */
+function differenceText(chosen, alternatives) {
+  const changed = range(chosen.length).filter((index) => alternatives[index] !== baseline[chosen[index]]);
+  const words = changed.map((index) => {
+    const { name, labels } = axes[chosen[index]];
+    return alternatives[index] < 0 ? `without ${name}` : `${name} ${unitText(labels[alternatives[index]])}`;
+  });
+  return words.join(", ") || "baseline";
+}
+
+/** Names for some runs that tell them apart in few words, as a function of the run. */
+function namesOf(list) {
+  const all = range(axes.length);
+  if (baseline)
+    return (run) =>
+      differenceText(
+        all,
+        all.map((axis) => runs.choice[axis][run]),
+      );
+  const differing = all.filter((axis) => new Set(list.map((run) => runs.choice[axis][run])).size > 1);
+  const word = (axis, run) => {
+    if (!isNumeric(axis)) return alternativeOf(axis, run);
+    const isSampled = axes[axis].spacing === "sampled"; // its labels have more digits than anybody reads
+    return `${axes[axis].name} ${isSampled ? numberText(placeOf(axis, run), 3) : unitText(alternativeOf(axis, run))}`;
+  };
+  const words = (run) => differing.filter((axis) => runs.choice[axis][run] >= 0).map((axis) => word(axis, run));
+  return (run) => words(run).join(", ") || `run ${run}`;
+}
+
+/** A formulation in words. */
+const lineName = (line) =>
+  baseline ? differenceText(report.line_axes, lines[line].choice) : unitText(lines[line].label);
+
 /** What a run can have cost, by name. */
 const costs = {
   "solve time": { title: "Solve time (s)", of: (run) => runs.solve_seconds[run] },
@@ -110,6 +153,12 @@ function median(values) {
         0.5,
       )
     : null;
+}
+
+/** At most so many of the items, evenly spread over them. */
+function spreadOver(items, most) {
+  if (items.length <= most) return items;
+  return range(most).map((index) => items[Math.round((index * (items.length - 1)) / (most - 1))]);
 }
 
 /** [smallest, largest]; a spread of 10 000 arguments would be too many. */

@@ -118,7 +118,7 @@ function distributionTables() {
     tableFrame(
       table(
         ["runs", "mean", "standard deviation", ...quantileColumns],
-        [[own.count, own.mean, own.deviation, ...own.quantiles.map(([, value]) => value)]],
+        [[own.count, ...[own.mean, own.deviation, ...own.quantiles.map(([, one]) => one)].map((one) => roundedTo(5, one))]],
       ),
       "Quantiles",
     ),
@@ -148,39 +148,134 @@ function shareBars(shares) {
 }
 
 function buildSensitivities(root) {
+  if (report.inseparable.length) root.append(inseparableBox());
   const figure = report.sensitivities.length ? addFigure(root, "sensitivities", { canvas: false }) : null;
-  const warnings = report.inseparable.map(({ axes: pair, cosine, text }) =>
-    element(
-      "div",
-      { class: "warning-box" },
-      element(
-        "p",
-        {},
-        element("b", {}, `${axes[pair[0]].name} and ${axes[pair[1]].name} cannot be told apart. `),
-        text,
-      ),
-      element("p", { class: "muted" }, `Cosine of their sensitivities: ${numberText(cosine)}`),
-    ),
-  );
-  root.append(...warnings);
   return () => {
     if (figure) drawSensitivities(figure);
   };
 }
 
+/** The parameters whose effects the quantities cannot tell apart, a line for each pair. */
+function inseparableBox() {
+  return element(
+    "div",
+    { class: "warning-box" },
+    report.inseparable.map(({ axes: pair, cosine, text }) =>
+      element(
+        "p",
+        { title: text },
+        element("b", {}, `${axes[pair[0]].name} and ${axes[pair[1]].name} cannot be told apart`),
+        ` by these quantities: ${cosine > 0 ? "they act alike" : "they act against each other in one proportion"} `,
+        `(cosine of their sensitivities ${numberText(cosine)}).`,
+      ),
+    ),
+  );
+}
+
+const ownSensitivities = () => report.sensitivities.filter(({ quantity }) => quantity === view.quantity);
+
+/** Whether a study of parameters about one place has something to say of the quantity: then that is its result. */
+const sensitivitiesAtOnePlace = () =>
+  !sampledAxes.length && ownSensitivities().length === 1 && ownSensitivities()[0].entries.length > 1;
+
+const byElasticity = (entries) =>
+  [...entries].sort((a, b) => Math.abs(b.elasticity ?? 0) - Math.abs(a.elasticity ?? 0));
+
+/** At one place: what each parameter does, as bars. */
+function drawElasticities(figure) {
+  const { at, entries } = ownSensitivities()[0];
+  const shown = byElasticity(entries).slice(0, mostBars);
+  const name = quantityName(view.quantity);
+  figure.showTitle(`What 1 % more of each parameter does to ${name}`);
+  const options = baseOptions();
+  Object.assign(options, { indexAxis: "y", interaction: { mode: "y", intersect: false } });
+  options.scales = {
+    x: linearScale(`Change of ${name} (%)`),
+    y: scaleOf("", { type: "category", title: { display: false }, ticks: { autoSkip: false } }),
+  };
+  options.plugins.tooltip.callbacks = {
+    label: ({ dataIndex }) => {
+      const { elasticity } = shown[dataIndex];
+      return [`elasticity: ${signedText(elasticity)}`, `derivative: ${derivativeText(shown[dataIndex])}`];
+    },
+  };
+  const names = shown.map(({ axis }) => axes[axis].name);
+  figure.showChart(
+    {
+      type: "bar",
+      data: {
+        labels: names,
+        datasets: [
+          {
+            label: name,
+            data: shown.map(({ elasticity }, index) => ({ x: elasticity, y: names[index] })),
+            backgroundColor: shown.map(({ elasticity }) => pageColour(elasticity < 0 ? "negative" : "positive")),
+            maxBarThickness: 26,
+          },
+        ],
+      },
+      options,
+    },
+    shown.length * 38 + 80,
+  );
+  figure.showNote(`At ${unitText(at)}.`);
+  figure.showData(["axis", "derivative", "elasticity"], () =>
+    shown.map(({ axis, derivative, elasticity }) => [axes[axis].name, derivative, elasticity]),
+  );
+}
+
+const derivativeText = ({ axis, derivative }) =>
+  `${numberText(derivative)} ${derivativeUnit(quantities[view.quantity].unit, axes[axis].unit)}`.trim();
+
+const mostPlaces = 12;
+let showsAllPlaces = false;
+
+/** Of a grid: a row per place, a column per parameter, the most influential first. */
+function placesTable(places) {
+  const sizes = groupBy(
+    places.flatMap(({ entries }) => entries),
+    ({ axis }) => axis,
+  ).map(([axis, entries]) => ({ axis, size: median(entries.map(({ elasticity }) => Math.abs(elasticity ?? 0))) }));
+  const parameters = sizes.sort((a, b) => b.size - a.size).map(({ axis }) => axis);
+  const cell = (entry) =>
+    entry
+      ? element(
+          "span",
+          { class: "sensitivity" },
+          numberText(entry.elasticity, 3),
+          element("small", { class: "muted" }, derivativeText(entry)),
+        )
+      : unknownText;
+  const rows = places.map(({ at, entries }) => [
+    unitText(at),
+    ...parameters.map((axis) => cell(entries.find((entry) => entry.axis === axis))),
+  ]);
+  return table(["at", ...parameters.map((axis) => axes[axis].name)], rows, { class: "places" });
+}
+
 function drawSensitivities(figure) {
-  const own = report.sensitivities.filter(({ quantity }) => quantity === view.quantity);
-  const { unit, column } = quantities[view.quantity];
+  const own = ownSensitivities();
+  const { column } = quantities[view.quantity];
   figure.showTitle(`What ${quantityName(view.quantity)} is sensitive to`);
   if (!own.length) figure.showElements(element("p", { class: "muted" }, "Nothing is known of this quantity."));
-  else
+  else if (own.length === 1)
     figure.showElements(
-      ...own.flatMap(({ at, entries }) => [
-        element("h4", {}, at),
-        tableFrame(sensitivityTable(entries, unit), "Sensitivities"),
-      ]),
+      element("h4", {}, unitText(own[0].at)),
+      tableFrame(sensitivityTable(own[0].entries), "Sensitivities"),
     );
+  else {
+    const shown = showsAllPlaces ? own : spreadOver(own, mostPlaces);
+    const flip = () => {
+      showsAllPlaces = !showsAllPlaces;
+      redraw();
+    };
+    const more = showsAllPlaces ? `Show ${mostPlaces}` : `Show all ${wholeText(own.length)} places`;
+    figure.showElements(tableFrame(placesTable(shown), "Sensitivities"));
+    if (own.length > mostPlaces) figure.box.append(button(more, flip, { class: "link", "aria-expanded": String(showsAllPlaces) }));
+  }
   figure.showNote(
+    !showsAllPlaces && own.length > mostPlaces ? `${mostPlaces} of ${own.length} places, evenly spread.` : "",
+    own.length > 1 ? "Large: elasticity, small: derivative." : "",
     "Elasticity: the relative change of the quantity over that of the parameter;",
     "−0.5 means that 1 % more of the parameter takes 0.5 % away.",
   );
@@ -191,8 +286,8 @@ function drawSensitivities(figure) {
   );
 }
 
-function sensitivityTable(entries, unit) {
-  const sorted = [...entries].sort((a, b) => Math.abs(b.elasticity ?? 0) - Math.abs(a.elasticity ?? 0));
+function sensitivityTable(entries) {
+  const sorted = byElasticity(entries);
   const most = Math.max(...sorted.map(({ elasticity }) => Math.abs(elasticity ?? 0)), 1e-300);
   const bar = (elasticity) =>
     element(
@@ -205,11 +300,11 @@ function sensitivityTable(entries, unit) {
     );
   return table(
     ["parameter", "derivative", "elasticity", ""],
-    sorted.map(({ axis, derivative, elasticity }) => [
-      axes[axis].name,
-      element("span", { class: "number" }, `${numberText(derivative)} ${derivativeUnit(unit, axes[axis].unit)}`),
-      elasticity ?? null,
-      bar(elasticity),
+    sorted.map((entry) => [
+      axes[entry.axis].name,
+      element("span", { class: "number" }, derivativeText(entry)),
+      roundedTo(3, entry.elasticity),
+      bar(entry.elasticity),
     ]),
   );
 }

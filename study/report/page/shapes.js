@@ -9,6 +9,7 @@ function buildShapes(root) {
   const figure = addFigure(root, "shapes", { canvas: false });
   const chosen = new Set(range(Math.min(report.shapes.length, mostShapesAtFirst)));
   const plane = shapeWindow(figure, chosen);
+  const nameOf = namesOf(report.shapes.map(({ run }) => run));
   return () => {
     figure.showTitle("Shapes and contact forces");
     plane.draw();
@@ -16,7 +17,7 @@ function buildShapes(root) {
     figure.legend.replaceChildren(
       ...range(report.shapes.length)
         .filter(isShapeShown)
-        .map((index) => shapeEntry(report.shapes[index], index, chosen)),
+        .map((index) => shapeEntry(nameOf(report.shapes[index].run), index, chosen)),
       ...shapeKeys(),
     );
     const largest = largestForce();
@@ -33,7 +34,7 @@ function buildShapes(root) {
 
 const isShapeShown = (index) => view.isShown[report.shapes[index].run] === 1;
 
-function shapeEntry({ label, run }, index, chosen) {
+function shapeEntry(name, index, chosen) {
   const entry = button(
     "",
     () => {
@@ -43,21 +44,21 @@ function shapeEntry({ label, run }, index, chosen) {
     {
       class: "entry",
       "aria-pressed": String(chosen.has(index)),
-      title: `${label}: show or hide`,
+      title: `${name}: show or hide`,
     },
   );
   entry.append(
     element("i", { class: "dot", style: `background: ${shapeColour(index)}` }),
-    element("span", { class: "name" }, shortened(label || describeRun(run), longestName)),
+    element("span", { class: "name" }, shortened(name, longestName)),
   );
   return entry;
 }
 
-/** A formulation's own colour, unless several shapes are of one. */
+/** The colour of the formulation's family, unless several shapes are of one. */
 function shapeColour(index) {
-  const linesShown = report.shapes.map(({ run }) => lineOfRun[run]);
-  const isDistinct = new Set(linesShown).size === linesShown.length && linesShown.every((line) => line >= 0);
-  return lineStyle(isDistinct ? linesShown[index] : index).colour;
+  const familiesShown = report.shapes.map(({ run }) => familyOfLine[lineOfRun[run]] ?? -1);
+  const isDistinct = new Set(familiesShown).size === familiesShown.length && !familiesShown.includes(-1);
+  return styleOf(isDistinct ? familiesShown[index] : index).colour;
 }
 
 function shapeKeys() {

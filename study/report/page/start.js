@@ -10,7 +10,7 @@ watchers.push(buildControls(), buildMainFigure());
 
 const someValue = range(quantities.length).some(hasValues);
 if (report.along !== null && someValue) addSection("convergence", "Convergence", buildConvergence);
-if (mappableAxes.length >= 2) addSection("heat-map", "Two axes at once", buildHeatMap);
+if (mappableAxes.length >= 2 && !baseline) addSection("heat-map", "Two axes at once", buildHeatMap);
 if (report.effects.length) addSection("effects", "Effects", buildEffects);
 if (report.distributions.length || (sampledAxes.length && someValue))
   addSection("distribution", "Distribution", buildDistribution);

@@ -36,12 +36,23 @@ darkPreferred.addEventListener("change", () => setScheme(scheme));
 /** The value of a colour of page.css, for what is drawn on a canvas. */
 const pageColour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
+/** Of a formulation: its family's, where lines are many, in a shade of its own. */
 function lineStyle(line) {
+  if (line < 0) return { colour: pageColour("muted"), marker: "circle", dash: [] };
+  const family = familyOfLine[line];
+  const members = families[family].lines;
+  const pale = members.length > 1 ? 0.55 * (1 - members.indexOf(line) / (members.length - 1)) : 0;
+  const style = styleOf(family);
+  return { ...style, colour: hexadecimal(between(channels(style.colour), channels(pageColour("ground")), pale)) };
+}
+
+/** Of the so-manieth of several things. */
+function styleOf(index) {
   const colours = seriesColours[isDark() ? "dark" : "light"];
   return {
-    colour: line < 0 ? pageColour("muted") : colours[line % colours.length],
-    marker: line < 0 ? "circle" : markers[line % markers.length],
-    dash: line < 0 ? [] : dashes[Math.floor(line / colours.length) % dashes.length],
+    colour: colours[index % colours.length],
+    marker: markers[index % markers.length],
+    dash: dashes[Math.floor(index / colours.length) % dashes.length],
   };
 }
 
@@ -71,6 +82,7 @@ function scaleColour(share) {
   const below = Math.min(Math.floor(at), scaleStops.length - 2);
   return between(scaleStops[below], scaleStops[below + 1], at - below);
 }
+const hexadecimal = (colour) => `#${colour.map((part) => part.toString(16).padStart(2, "0")).join("")}`;
 const css = ([red, green, blue]) => `rgb(${red}, ${green}, ${blue})`;
 const inkOn = ([red, green, blue]) => (0.299 * red + 0.587 * green + 0.114 * blue > 140 ? "#111" : "#fff");
 
@@ -87,7 +99,7 @@ function swatch(line) {
       y2: 7,
       stroke: colour,
       "stroke-width": 2,
-      "stroke-dasharray": dash.join(" "),
+      "stroke-dasharray": recommended.has(line) ? "" : dash.join(" "), // as it is drawn
     }),
     markerShape(marker, colour),
   );

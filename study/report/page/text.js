@@ -8,11 +8,15 @@ function numberText(value, digits = 4) {
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (Number.isInteger(value) && size < 1e6) return String(value).replace("-", "−");
+  if (size >= 10 ** digits - 0.5 && size < 1e6) return value.toFixed(0).replace("-", "−");
   const text = size < 1e-3 || size >= 1e6 ? value.toExponential(digits - 1) : value.toPrecision(digits);
   const [mantissa, exponent] = text.split("e");
   const short = mantissa.includes(".") ? mantissa.replace(/\.?0+$/, "") : mantissa;
   return (exponent === undefined ? short : `${short}e${exponent.replace("+", "")}`).replaceAll("-", "−");
 }
+
+/** For a table: a number without the digits that nobody asked for. */
+const roundedTo = (digits, value) => (isKnown(value) ? Number(value.toPrecision(digits)) : null);
 
 const wholeText = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, "\u202f");
 const counted = (count, noun, plural = `${noun}s`) => `${wholeText(count)} ${count === 1 ? noun : plural}`;

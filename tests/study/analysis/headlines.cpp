@@ -123,8 +123,34 @@ TEST_CASE("a grid opens with the parameter that matters most") {
   });
   const Analysis analysis = analyse(data);
   REQUIRE(analysis.headlines.size() == 2);
-  CHECK(analysis.headlines[0].text == "1 % more of EI changes q_mm by 0.021 %, of T by 0.01 %");
+  CHECK(analysis.headlines[0].text == "1 % more of EI lowers q_mm by 0.021 %, of T raises it by 0.01 %");
+  CHECK(analysis.headlines[0].detail.rfind("Medians of the size over the places of the grid; EI -0.0", 0) == 0);
   CHECK(analysis.headlines[1].kind == HeadlineKind::warning);
+}
+
+TEST_CASE("parameters about one place") {
+  StudyData data =
+      study_of({number_axis("T", {9.8, 10.0, 10.2}, "N"), number_axis("R", {5.9, 6.0, 6.1}, "mm")}, {"q_mm"});
+  for (int k : {0, 1, 2}) add_run(data, {k, 1});
+  for (int k : {0, 2}) add_run(data, {1, k});
+  fill(data, 0,
+       [](const StudyData& d, const RunData& run) { return std::pow(number(d, run, 0), 2.0) * number(d, run, 1); });
+  const Analysis analysis = analyse(data);
+  REQUIRE(!analysis.headlines.empty());
+  CHECK(analysis.headlines[0].text == "1 % more of T raises q_mm by 2 %, of R by 1 %");
+  CHECK(analysis.headlines[0].detail == "What 1 % more of each does: T 2 %; R 1 %.");
+}
+
+TEST_CASE("reasons that differ in numbers alone are one") {
+  StudyData data = anchoring_study();
+  for (int run = 0; run < 36; ++run) {
+    fail(
+        data, run, "stalled",
+        run < 20 ? "edge " + std::to_string(run) + " has folded: stretch 1.5e-0" + std::to_string(run % 7) : "no step");
+  }
+  const Analysis analysis = analyse(data);
+  REQUIRE(!analysis.headlines.empty());
+  CHECK(analysis.headlines.back().detail == "20 like: edge 0 has folded: stretch 1.5e-00; 16: no step.");
 }
 
 TEST_CASE("failures are counted, with what they have in common") {
