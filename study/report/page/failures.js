@@ -58,7 +58,7 @@ function commonWords(failed) {
     );
   });
   return shared.length
-    ? `All of them have ${shared.map((axis) => `${axes[axis].name} ${alternativeOf(axis, failed[0])}`).join(", ")}.`
+    ? `All of them have ${shared.map((axis) => `${axes[axis].name} ${unitText(alternativeOf(axis, failed[0]))}`).join(", ")}.`
     : "";
 }
 
