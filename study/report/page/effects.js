@@ -105,7 +105,7 @@ function effectTip({ mean, low, high, pairs, relative, largest, largest_run: run
   ];
 }
 
-const labelLength = (figure) => Math.max(14, Math.floor(figure.box.clientWidth / 24));
+const labelLength = (figure) => Math.max(20, Math.floor(figure.box.clientWidth / 24));
 
 /** "contact: node-wise → segment-wise" in one line or, broken at the arrow, in two. */
 function changeLabel(text, figure) {

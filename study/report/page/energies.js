@@ -73,7 +73,7 @@ function drawEnergies(figure) {
     count > chosen.length
       ? `${chosen.length} of ${counted(count, "run")}, evenly spread; filters bring out the others.`
       : "",
-    failed.length ? `✕ before a name: did not converge.` : "",
+    failed.length ? "✕ before a name: did not converge." : "",
   );
   figure.showData(
     ["run", ...axes.map(({ column }) => column), ...report.energies.map(({ term }) => `${term} (N mm)`)],

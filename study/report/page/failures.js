@@ -57,9 +57,7 @@ function commonWords(failed) {
       view.runs.some((run) => runs.choice[axis][run] !== first)
     );
   });
-  return shared.length
-    ? `All of them have ${shared.map((axis) => `${axes[axis].name} ${alternativeOf(axis, failed[0])}`).join(", ")}.`
-    : "";
+  return shared.length ? `All of them have ${unitText(describeRun(failed[0], shared))}.` : "";
 }
 
 function statusBadge(status) {

@@ -161,7 +161,11 @@ function heatTable(cells, across, down, scale, shows) {
     element(
       "tr",
       {},
-      element("th", { scope: "row", title: axes[down].labels[index] }, shortened(unitText(axes[down].labels[index]), 26)),
+      element(
+        "th",
+        { scope: "row", title: axes[down].labels[index] },
+        shortened(unitText(axes[down].labels[index]), 26),
+      ),
       row.map((cell, column) =>
         heatCell(cell, scale, shows, isDense, `${axes[down].labels[index]}, ${axes[across].labels[column]}`),
       ),

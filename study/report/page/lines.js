@@ -180,7 +180,10 @@ function datasetsOf(series, connected) {
     .filter((dataset) => dataset.data.length);
 }
 
-/** Draws runs as points, lines in the order of their runs or `byX`. `scales(series)` gives the axes once it is known what they must hold; `tip(run)` the words. */
+/**
+ * Draws runs as points, lines in the order of their runs or `byX`. `scales(series)` gives the axes once it is known what
+ * they must hold; `tip(run)` the words.
+ */
 function drawPoints(figure, { xOf, yOf, log, connected, byX = false, scales, tip, plugins = [] }) {
   const { groups, note } = thinned(shownGroups());
   const { series, missing } = pointsOf(groups, xOf, yOf, log);

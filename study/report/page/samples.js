@@ -112,13 +112,14 @@ const quantileLines = (sorted) => ({
 function distributionTables() {
   const own = distributionOf(view.quantity);
   if (!own) return [];
+  const numbers = [own.mean, own.deviation, ...own.quantiles.map(([, value]) => value)];
   const quantileColumns = own.quantiles.map(([share]) => percentText(share));
   const tables = [
     element("h3", {}, `${capital(quantityTitle(view.quantity))} over the whole sample`),
     tableFrame(
       table(
         ["runs", "mean", "standard deviation", ...quantileColumns],
-        [[own.count, ...[own.mean, own.deviation, ...own.quantiles.map(([, one]) => one)].map((one) => roundedTo(5, one))]],
+        [[own.count, ...numbers.map((value) => roundedTo(5, value))]],
       ),
       "Quantiles",
     ),
@@ -271,7 +272,8 @@ function drawSensitivities(figure) {
     };
     const more = showsAllPlaces ? `Show ${mostPlaces}` : `Show all ${wholeText(own.length)} places`;
     figure.showElements(tableFrame(placesTable(shown), "Sensitivities"));
-    if (own.length > mostPlaces) figure.box.append(button(more, flip, { class: "link", "aria-expanded": String(showsAllPlaces) }));
+    const properties = { class: "link", "aria-expanded": String(showsAllPlaces) };
+    if (own.length > mostPlaces) figure.box.append(button(more, flip, properties));
   }
   figure.showNote(
     !showsAllPlaces && own.length > mostPlaces ? `${mostPlaces} of ${own.length} places, evenly spread.` : "",

@@ -317,7 +317,8 @@ class Grid(Page):
         self.check_looks()
 
     def test_lines_that_differ_in_numbers_alone_are_one_entry_in_shades_of_one_colour(self):
-        entries = self.value("[...figures.main.legend.querySelectorAll('.entry .name')].map((name) => name.textContent)")
+        names = "figures.main.legend.querySelectorAll('.entry .name')"
+        entries = self.value(f"[...{names}].map(({{ textContent }}) => textContent)")
         self.assertEqual(entries, ["planar, EI = 65 … 6132 N mm²", "helical, EI = 65 … 6132 N mm²"])
         self.assertIn("Shades: EI", self.value("figures.main.note.textContent"))
         colours = dict(self.value("datasets('main').map(({ line, borderColor }) => [line, borderColor])"))
@@ -333,7 +334,8 @@ class Grid(Page):
         self.assertEqual({point["line"] for point in self.points("main").values()}, set(range(10)))
 
     def test_lines_go_over_their_axis_in_the_order_of_its_numbers(self):
-        drawn = self.value("datasets('main').filter(({ showLine }) => showLine).map(({ data }) => data.map(({ x }) => x))")
+        lines = "datasets('main').filter(({ showLine }) => showLine)"
+        drawn = self.value(lines + ".map(({ data }) => data.map(({ x }) => x))")
         self.assertEqual(drawn, [[1, 2, 5, 10, 15, 20]] * 8)
 
     def test_sensitivities_are_one_table_of_a_few_places_or_all(self):
