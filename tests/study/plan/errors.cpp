@@ -160,12 +160,12 @@ N = { path = "wire.rod.geometry.nodes", values = [10, 20] }
 TEST_CASE("more combinations than can be walked are told before they are made") {
   SmallStudy study(R"(exclude = [{ A = "1 N mm^2" }]
 [axes]
-A = { path = "energy.wire-bending.bending-stiffness", linear = ["1 N mm^2", "2 N mm^2"], count = 1000000 }
-N = { path = "wire.rod.geometry.nodes", linear = [3, 1000000], count = 500000 }
+A = { path = "energy.wire-bending.bending-stiffness", linear = ["1 N mm^2", "2 N mm^2"], count = 2000 }
+N = { path = "wire.rod.geometry.nodes", linear = [3, 5000], count = 2000 }
 )");
   CHECK(
       study.errors() ==
-      "study.toml: the axes make 5e+11 combinations; expected between 1 and 1000000 runs; shorten the axes, or take a "
+      "study.toml: the axes make 4e+06 combinations; expected between 1 and 1000000 runs; shorten the axes, or take a "
       "sample");
 }
 
