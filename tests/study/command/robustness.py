@@ -267,7 +267,7 @@ on = "iliac"
     require_equal({status for status, _ in by_how["stays"]}, {"converged"}, "stays")
     twice = "the process that solved it ended with {}, twice"
     require_equal(by_how["exits"], {("failed", twice.format("exit status 0"))}, "exits")
-    require_equal(by_how["crashes"], {("failed", twice.format("signal 11 (Segmentation fault)"))}, "crashes")
+    require_equal(by_how["crashes"], {("failed", twice.format("signal 9 (Killed)"))}, "crashes")
     require_equal(by_how["lingers"], {("failed", "it took longer than its time limit")}, "lingers")
 
 
