@@ -1,12 +1,17 @@
 #include "core/composition/read_file.hpp"
 
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 namespace bowstring {
+namespace {
+
+constexpr std::size_t piece_size = 1U << 16U;
+
+}  // namespace
 
 std::string read_file(const std::string& file, std::string& out) {
   std::error_code ignored;
@@ -14,7 +19,12 @@ std::string read_file(const std::string& file, std::string& out) {
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return errno != 0 ? std::strerror(errno) : "it cannot be opened";
-  out.assign(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
+  out.clear();
+  std::string piece(piece_size, '\0');
+  do {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    out.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+  } while (stream);
   return stream.bad() ? "reading it failed" : "";
 }
 
