@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/shell.hpp"
+#include "core/composition/nearest.hpp"
 
 namespace bowstring::apps {
 

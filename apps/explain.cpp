@@ -2,6 +2,7 @@
 #include <set>
 
 #include "apps/shell.hpp"
+#include "core/composition/nearest.hpp"
 #include "core/model/manifold.hpp"
 #include "core/procedure/procedure.hpp"
 

@@ -6,10 +6,18 @@
 
 namespace bowstring::apps {
 
-PluginHostOptions host_options(const CommonOptions& common, const CompositionRequest& request) {
-  PluginHostOptions options = plugin_search(composition_plugin_path(request));
+namespace {
+
+PluginHostOptions host_options(const CommonOptions& common, std::vector<std::string> composition_path) {
+  PluginHostOptions options = plugin_search(std::move(composition_path));
   options.command_line_path = common.plugin_path;
   return options;
+}
+
+}  // namespace
+
+PluginHostOptions host_options(const CommonOptions& common, const CompositionRequest& request) {
+  return host_options(common, composition_plugin_path(request));
 }
 
 PluginHost make_host(const CommonOptions& common, const std::string& composition_file) {
@@ -17,15 +25,12 @@ PluginHost make_host(const CommonOptions& common, const std::string& composition
 }
 
 PluginHost make_host(const CommonOptions& common, const std::vector<std::string>& composition_files) {
-  PluginHostOptions options = plugin_search();
-  options.command_line_path = common.plugin_path;
+  std::vector<std::string> path;
   for (const std::string& file : composition_files) {
     if (file.empty()) continue;
-    for (std::string& folder : composition_plugin_path({file, {}})) {
-      options.composition_path.push_back(std::move(folder));
-    }
+    for (std::string& folder : composition_plugin_path({file, {}})) path.push_back(std::move(folder));
   }
-  return PluginHost(options);
+  return PluginHost(host_options(common, std::move(path)));
 }
 
 bool parse_overrides(const std::vector<std::string>& set, std::vector<Override>& out) {
@@ -54,10 +59,6 @@ std::string number(double value, int digits) {
   char text[48];
   std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
-}
-
-std::string counted(int count, const std::string& singular) {
-  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
 }
 
 int width(const std::string& text) {

@@ -28,9 +28,6 @@ void complain(const std::string& text);
 /// "12.34" with so many significant digits.
 std::string number(double value, int digits = 5);
 
-/// "1 row", "2 rows".
-std::string counted(int count, const std::string& singular);
-
 /// Characters on a terminal.
 int width(const std::string& text);
 

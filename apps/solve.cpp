@@ -5,6 +5,7 @@
 #include "apps/outputs.hpp"
 #include "apps/shell.hpp"
 #include "apps/watched_run.hpp"
+#include "core/composition/nearest.hpp"
 #include "core/procedure/procedure.hpp"
 #include "core/procedure/summary.hpp"
 #include "core/result/document.hpp"

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <charconv>
 #include <cmath>
 #include <csignal>
@@ -15,6 +14,8 @@
 
 #include "apps/commands.hpp"
 #include "apps/shell.hpp"
+#include "apps/stop_signals.hpp"
+#include "core/composition/nearest.hpp"
 #include "core/composition/read_file.hpp"
 #include "core/result/write_file.hpp"
 #include "study/analysis/analysis.hpp"
@@ -37,23 +38,6 @@ using study::Plan;
 using study::PoolOptions;
 using study::PoolOutcome;
 using study::PoolProgress;
-
-std::atomic<bool> interrupted{false};
-
-extern "C" void on_stop(int) { interrupted.store(true); }
-
-/// While it lives, Ctrl-C and a polite end stop the pool.
-class StopSignals {
- public:
-  StopSignals() {
-    std::signal(SIGINT, on_stop);
-    std::signal(SIGTERM, on_stop);
-  }
-  ~StopSignals() {
-    std::signal(SIGINT, SIG_DFL);
-    std::signal(SIGTERM, SIG_DFL);
-  }
-};
 
 /// "12 s", "3 min 20 s", "2 h 5 min".
 std::string duration(double seconds) {
@@ -226,8 +210,8 @@ int study(const CommonOptions& common, const StudyOptions& options) {
   ProgressLine line;
   PoolOutcome outcome;
   {
-    const StopSignals signals;
-    outcome = study::run_pool(*plan, folder, *host, pool, interrupted, std::ref(line));
+    const StopSignals signals({SIGINT, SIGTERM});
+    outcome = study::run_pool(*plan, folder, *host, pool, StopSignals::seen(), std::ref(line));
   }
   line.finish();
   for (const std::string& problem : outcome.problems) complain(problem);

@@ -1,19 +1,16 @@
 #include "apps/watched_run.hpp"
 
-#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <functional>
 
 #include <unistd.h>
 
+#include "apps/stop_signals.hpp"
+
 namespace bowstring::apps {
 
 namespace {
-
-std::atomic<bool> interrupted{false};
-
-extern "C" void on_interrupt(int) { interrupted.store(true); }
 
 class Progress {
  public:
@@ -23,7 +20,7 @@ class Progress {
                    record.iteration, record.energy, record.stationarity, record.penetration, record.step);
       std::fflush(stderr);
     }
-    return !interrupted.load();
+    return !StopSignals::seen().load();
   }
   void finish() const {
     if (terminal_) std::fprintf(stderr, "\r\033[K");
@@ -36,11 +33,10 @@ class Progress {
 }  // namespace
 
 std::vector<StateResult> run_watched(Procedure& procedure) {
-  std::signal(SIGINT, on_interrupt);
+  const StopSignals signals({SIGINT});
   Progress progress;
   std::vector<StateResult> states = procedure.run(std::ref(progress));
   progress.finish();
-  std::signal(SIGINT, SIG_DFL);
   return states;
 }
 

@@ -19,6 +19,10 @@ const char* spacing_name(Spacing spacing) noexcept {
   return "";
 }
 
+int AxisData::largest() const noexcept {
+  return numeric() ? static_cast<int>(std::max_element(number.begin(), number.end()) - number.begin()) : -1;
+}
+
 bool AxisData::same_problem(int one, int other) const noexcept {
   if (problem.empty() || one < 0 || other < 0) return true;
   return problem[static_cast<std::size_t>(one)] == problem[static_cast<std::size_t>(other)];

@@ -24,6 +24,8 @@ struct AxisData {
   std::vector<int> problem;
 
   bool numeric() const noexcept { return !number.empty(); }
+  /// The alternative with the largest number; -1 without numbers.
+  int largest() const noexcept;
   /// Whether two alternatives are ways to solve one problem.
   bool same_problem(int one, int other) const noexcept;
   /// Whether some two are not.

@@ -43,10 +43,6 @@ std::string number(double value) {
   return text;
 }
 
-std::string counted(int count, const std::string& singular) {
-  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
-}
-
 /// The lower triangle of the Hessian, and sums with it.
 struct Symmetric {
   SparsityPattern pattern;

@@ -99,6 +99,10 @@ std::string joined(const std::vector<std::string>& texts, const char* between) {
   return text;
 }
 
+std::string counted(int count, const std::string& singular) {
+  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
+}
+
 std::string comma_separated(const std::vector<std::string>& names) { return joined(names, ", "); }
 
 }  // namespace bowstring

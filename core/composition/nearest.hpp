@@ -21,6 +21,9 @@ std::string quoted_alternatives(const std::vector<std::string>& names);
 /// "a; b; c" with "; " between.
 std::string joined(const std::vector<std::string>& texts, const char* between);
 
+/// "1 row", "2 rows".
+std::string counted(int count, const std::string& singular);
+
 /// "a, b, c".
 std::string comma_separated(const std::vector<std::string>& names);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/composition/nearest.hpp"
 #include "study/analysis/richardson.hpp"
 #include "study/analysis/statistics.hpp"
 #include "study/analysis/words.hpp"

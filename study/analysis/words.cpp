@@ -37,10 +37,6 @@ std::string seconds_text(double seconds) {
 
 std::string order_text(double order, int decimals) { return formatted("%.*f", decimals, order); }
 
-std::string counted(int count, const std::string& singular) {
-  return std::to_string(count) + " " + singular + (count == 1 ? "" : "s");
-}
-
 std::string range_text(const std::string& low, const std::string& high) { return low == high ? low : low + "…" + high; }
 
 std::string of_all(int count, int all) { return std::to_string(count) + " of " + std::to_string(all); }

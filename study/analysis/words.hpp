@@ -15,8 +15,6 @@ std::string percent_range(double low, double high);
 std::string seconds_text(double seconds);
 /// "2.0", "1.98" of an order of convergence.
 std::string order_text(double order, int decimals = 1);
-/// "1 line", "2 lines".
-std::string counted(int count, const std::string& singular);
 /// "1.9…2.1", or one of them where both read the same.
 std::string range_text(const std::string& low, const std::string& high);
 /// "3 of 6".

@@ -438,6 +438,19 @@ void read_axes(const Node& table, const std::string& study_file, std::vector<Axi
   for (const Entry& entry : table.entries) AxisReader(entry, study_file, report).read(axes, groups);
 }
 
+int find_axis(const std::vector<Axis>& axes, const std::string& name, const Position& position,
+              const std::string& whose, Report& report) {
+  std::vector<std::string> known;
+  for (const Axis& axis : axes) {
+    if (axis.data.name == name) return static_cast<int>(&axis - axes.data());
+    known.push_back(axis.data.name);
+  }
+  const std::vector<std::string> near = nearest_names(name, known);
+  report.error(position, whose + " names the axis '" + name + "', which there is not",
+               "one of: " + comma_separated(known), near.empty() ? "name an axis of this study" : did_you_mean(near));
+  return -1;
+}
+
 int find_alternative(const Axis& axis, const Node& value) {
   const std::string label = label_of_value(value);
   for (std::size_t i = 0; i < axis.data.label.size(); ++i) {

@@ -14,6 +14,10 @@ namespace bowstring::study {
 void read_axes(const Node& table, const std::string& study_file, std::vector<Axis>& axes,
                std::vector<AxisGroup>& groups, Report& report);
 
+/// The axis of that name; -1 where there is none, which is reported: `whose` names it, "'exclude'".
+int find_axis(const std::vector<Axis>& axes, const std::string& name, const Position& position,
+              const std::string& whose, Report& report);
+
 /// The alternative of an axis that a value means: its label, its number in the axis' unit, a quantity. -1: none.
 int find_alternative(const Axis& axis, const Node& value);
 

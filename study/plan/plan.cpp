@@ -193,15 +193,6 @@ std::string predecessor_hash(const Plan& plan, const PlannedRun& run) {
   return run.predecessor < 0 ? "" : plan.runs[at(run.predecessor)].hash;
 }
 
-/// A run's choices, but -1 for the axis and those that are walked with it: what the runs along it have in common.
-std::vector<int> without_walk(const StudyFile& study, std::vector<int> choice, int axis) {
-  for (const AxisGroup& group : study.groups) {
-    if (std::find(group.axes.begin(), group.axes.end(), axis) == group.axes.end()) continue;
-    for (const int walked : group.axes) choice[at(walked)] = -1;
-  }
-  return choice;
-}
-
 /// Chains along the warm axis: the runs that agree in every axis but those walked with it.
 std::vector<std::vector<int>> chains_of(const Plan& plan) {
   std::vector<std::vector<int>> chains;
@@ -253,8 +244,7 @@ void check_reference(const Plan& plan, Refusal& refusal) {
   const Reference& reference = plan.study.reference;
   if (reference.axis < 0) return;
   // An extrapolation is made of several meshes, whichever; the finest one is one of them.
-  const std::vector<double>& meshes = plan.study.axes[at(reference.axis)].data.number;
-  const auto finest = static_cast<int>(std::max_element(meshes.begin(), meshes.end()) - meshes.begin());
+  const int finest = plan.study.axes[at(reference.axis)].data.largest();
   std::map<std::vector<int>, int> family;
   const auto reaches = [&](const PlannedRun& run) {
     if (!run.refusal.empty()) return false;
@@ -286,6 +276,11 @@ CompositionRequest request_of(const StudyFile& study, const std::vector<int>& ch
   return request;
 }
 
+std::vector<int> without_walk(const StudyFile& study, std::vector<int> choice, int axis) {
+  for (const int walked : walked_with(study, axis)) choice[at(walked)] = -1;
+  return choice;
+}
+
 std::string refusal_reason(const StudyFile& study, const Refusal& refusal) {
   std::vector<std::string> texts;
   for (InputError error : refusal.errors) {
@@ -308,8 +303,11 @@ std::string run_label(const StudyFile& study, const std::vector<int>& choice) {
   return comma_separated(texts);
 }
 
-std::string hash_now(const Plan& plan, int run, Registry& registry) {
+std::string hash_now(const Plan& plan, int run, const Composition* read_just_now, Registry& registry) {
   const PlannedRun& planned = plan.runs[at(run)];
+  if (read_just_now != nullptr && read_just_now->steps.empty()) {
+    return Identity().of({*read_just_now}, provenance_of(*read_just_now, registry), predecessor_hash(plan, planned));
+  }
   const ReadRun read = read_run(request_of(plan.study, planned.choice), registry);
   if (read.states.empty()) return "";
   return Identity().of(read.states, read.provenance, predecessor_hash(plan, planned));

@@ -43,7 +43,11 @@ std::string refusal_reason(const StudyFile& study, const Refusal& refusal);
 std::string run_label(const StudyFile& study, const std::vector<int>& choice);
 
 /// What the run would be told apart by if the study were read at this moment; "" where it cannot be read.
-std::string hash_now(const Plan& plan, int run, Registry& registry);
+/// `read_just_now`: its composition, of the first state where it has several; null where there is none.
+std::string hash_now(const Plan& plan, int run, const Composition* read_just_now, Registry& registry);
+
+/// A run's choices, but -1 for the axis and those that are walked with it: what the runs along it have in common.
+std::vector<int> without_walk(const StudyFile& study, std::vector<int> choice, int axis);
 
 /// Reads every composition of the study. A value that no run can take is an error of the study, and so is what all runs
 /// have in common; what only some combinations cannot take is a refused run. Empty where `refusal` has got something.

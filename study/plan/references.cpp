@@ -173,15 +173,7 @@ class Reader {
   }
 
   int axis_called(const std::string& name, const Position& position) {
-    std::vector<std::string> known;
-    for (std::size_t a = 0; a < study_.axes.size(); ++a) {
-      known.push_back(study_.axes[a].data.name);
-      if (known.back() == name) return static_cast<int>(a);
-    }
-    const std::vector<std::string> near = nearest_names(name, known);
-    fail(position, "[reference] names the axis '" + name + "', which there is not", "one of: " + comma_separated(known),
-         near.empty() ? "name an axis of this study" : did_you_mean(near));
-    return -1;
+    return find_axis(study_.axes, name, position, "[reference]", report_);
   }
 
   void read_axis(const Entry& form, const Entry* at) {
@@ -201,7 +193,8 @@ class Reader {
            "at least three meshes", "add values, or compare with finest = \"" + axis.data.name + "\"");
     }
     out_.text = richardson ? "extrapolation over " + axis.data.name
-                           : "the run with " + axis.data.name + " = " + axis.data.label[finest(axis)];
+                           : "the run with " + axis.data.name + " = " +
+                                 axis.data.label[static_cast<std::size_t>(axis.data.largest())];
     if (at != nullptr) out_.at = read_places(*at);
     for (const auto& [a, k] : out_.at) {
       const AxisData& data = study_.axes[static_cast<std::size_t>(a)].data;
@@ -237,19 +230,8 @@ class Reader {
   }
 
   bool walked_with_the_reference(int axis) const {
-    if (out_.axis < 0) return false;
-    return std::any_of(study_.groups.begin(), study_.groups.end(), [&](const AxisGroup& group) {
-      const auto has = [&](int a) { return std::find(group.axes.begin(), group.axes.end(), a) != group.axes.end(); };
-      return has(axis) && has(out_.axis);
-    });
-  }
-
-  static std::size_t finest(const Axis& axis) {
-    std::size_t best = 0;
-    for (std::size_t i = 0; i < axis.data.number.size(); ++i) {
-      if (axis.data.number[i] > axis.data.number[best]) best = i;
-    }
-    return best;
+    const std::vector<int> walked = walked_with(study_, out_.axis);
+    return std::find(walked.begin(), walked.end(), axis) != walked.end();
   }
 
   const StudyFile& study_;

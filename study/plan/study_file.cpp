@@ -219,18 +219,12 @@ class StudyReader {
   }
 
   int axis_called(const std::string& name, const Position& position, const std::string& whose) {
-    std::vector<std::string> known;
-    for (std::size_t a = 0; a < out_.axes.size(); ++a) {
-      known.push_back(out_.axes[a].data.name);
-      if (known.back() == name) return static_cast<int>(a);
-    }
+    const auto is_read = [&](const Axis& axis) { return axis.data.name == name; };
+    const bool read = std::any_of(out_.axes.begin(), out_.axes.end(), is_read);
     for (const auto& [entry, place] : axis_positions_) {
-      if (entry == name && !report_.empty()) return -1;  // it is told already why it could not be read
+      if (!read && entry == name && !report_.empty()) return -1;  // it is told already why it could not be read
     }
-    const std::vector<std::string> near = nearest_names(name, known);
-    fail(position, whose + " names the axis '" + name + "', which there is not", "one of: " + comma_separated(known),
-         near.empty() ? "name an axis of this study" : did_you_mean(near));
-    return -1;
+    return find_axis(out_.axes, name, position, whose, report_);
   }
 
   int axis_at(const std::string& key) {
@@ -420,6 +414,13 @@ class StudyReader {
 };
 
 }  // namespace
+
+std::vector<int> walked_with(const StudyFile& study, int axis) {
+  for (const AxisGroup& group : study.groups) {
+    if (std::find(group.axes.begin(), group.axes.end(), axis) != group.axes.end()) return group.axes;
+  }
+  return {};
+}
 
 std::vector<std::string> bases_of(const StudyFile& study) {
   std::vector<std::string> out;

@@ -82,6 +82,9 @@ struct StudyFile {
   Reference reference;
 };
 
+/// The axis and those that are walked with it: zipped ones, the numbers of one sample.
+std::vector<int> walked_with(const StudyFile& study, int axis);
+
 /// Every composition that some run is made from, each once.
 std::vector<std::string> bases_of(const StudyFile& study);
 

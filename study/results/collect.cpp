@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/result/provenance.hpp"
+#include "study/analysis/statistics.hpp"
 #include "study/results/references.hpp"
 #include "study/workers/run_solver.hpp"
 #include "study/workers/unit_work.hpp"
@@ -22,10 +23,8 @@ double number_at(const std::map<std::string, RunRecord::Number>& table, const st
 }
 
 double median(std::vector<double> values) {
-  if (values.empty()) return unknown;
   std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+  return values.empty() ? unknown : quantile(values, 0.5);
 }
 
 StudyData frame(const Plan& plan) {

@@ -21,10 +21,9 @@ class ReferenceFinder {
   ReferenceFinder(const Plan& plan, StudyData& data)
       : study_(plan.study), reference_(plan.study.reference), data_(data) {
     if (reference_.axis < 0) return;
-    for (const AxisGroup& group : study_.groups) {
-      if (std::find(group.axes.begin(), group.axes.end(), reference_.axis) != group.axes.end()) along_ = group.axes;
+    for (std::size_t r = 0; r < data_.runs.size(); ++r) {
+      families_[without_walk(study_, data_.runs[r].choice, reference_.axis)].push_back(r);
     }
-    for (std::size_t r = 0; r < data_.runs.size(); ++r) families_[family_of(data_.runs[r].choice)].push_back(r);
   }
 
   void add() {
@@ -43,12 +42,7 @@ class ReferenceFinder {
   /// The choices of a run's reference: the run's own, but for the axes that are held; -1 along the reference's axis.
   std::vector<int> place_of(std::vector<int> choice) const {
     for (const auto& [axis, alternative] : reference_.at) choice[at(axis)] = alternative;
-    return family_of(std::move(choice));
-  }
-
-  std::vector<int> family_of(std::vector<int> choice) const {
-    for (const int axis : along_) choice[at(axis)] = -1;
-    return choice;
+    return without_walk(study_, std::move(choice), reference_.axis);
   }
 
   double value(std::size_t quantity, std::size_t run, std::map<std::vector<int>, double>& found) const {
@@ -104,8 +98,7 @@ class ReferenceFinder {
     std::sort(points.begin(), points.end());
     if (points.empty()) return unknown;
     if (reference_.form == Reference::Form::finest) {
-      const double finest = *std::max_element(axis.number.begin(), axis.number.end());
-      return points.back().first == finest ? points.back().second : unknown;
+      return points.back().first == axis.number[at(axis.largest())] ? points.back().second : unknown;
     }
     std::vector<double> meshes, values;
     for (const auto& [mesh, number] : points) {
@@ -119,8 +112,7 @@ class ReferenceFinder {
   const StudyFile& study_;
   const Reference& reference_;
   StudyData& data_;
-  std::vector<int> along_;                                         // axes that are walked with the reference's own
-  std::map<std::vector<int>, std::vector<std::size_t>> families_;  // runs that differ along them alone
+  std::map<std::vector<int>, std::vector<std::size_t>> families_;  // runs that differ along the reference's axis alone
 };
 
 }  // namespace

@@ -114,7 +114,6 @@ class Pool {
  private:
   struct Worker {
     pid_t process = -1;
-    int first_unit = -1;  ///< of a replacement: what its forerunner left undone
   };
 
   bool stopped() const { return stop_.load(); }
@@ -176,12 +175,12 @@ class Pool {
     return std::any_of(workers_.begin(), workers_.end(), [](const Worker& worker) { return worker.process > 0; });
   }
 
+  /// `first_unit`: of a replacement, what its forerunner left undone; -1: none.
   void start(std::size_t i, int first_unit) {
     Desk& desk = shared_.desk(i);
     desk.run.store(-1);
     desk.finished.store(false);
     desk.has_problem.store(false);
-    workers_[i].first_unit = first_unit;
     const pid_t parent = ::getpid();
     const pid_t process = ::fork();
     if (process == 0) {

@@ -192,7 +192,8 @@ SolvedRun solve_run(const Plan& plan, int run, const CarriedState* carried, bool
   for (int repeat = 0; repeat < plan.study.repeats && !out.stopped; ++repeat) {
     Refusal refusal;
     const std::unique_ptr<Procedure> procedure = Procedure::prepare(request, registry, refusal, carried);
-    if (repeat == 0 && hash_now(plan, run, registry) != out.record.hash) {
+    const Composition* composition = procedure != nullptr ? &procedure->session().composition : nullptr;
+    if (repeat == 0 && hash_now(plan, run, composition, registry) != out.record.hash) {
       out.problem = "files of the run " + run_label(plan.study, plan.runs[static_cast<std::size_t>(run)].choice) +
                     " have changed since the study was read; the same command begins with them as they are";
       return out;

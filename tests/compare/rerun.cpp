@@ -9,6 +9,7 @@
 #include "core/procedure/procedure.hpp"
 #include "core/result/document.hpp"
 #include "tests/plugins/plugin_folders.hpp"
+#include "tests/compare/reading.hpp"
 #include "tests/simulation/scenes.hpp"
 
 namespace bowstring {
@@ -18,13 +19,6 @@ using namespace testing;
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-RecordedResult read(const std::string& text) {
-  std::vector<DocumentFlaw> flaws;
-  RecordedResult out = read_result(text, "it", flaws);
-  REQUIRE(flaws.empty());
-  return out;
-}
 
 std::string solved(const Rerun& plan) {
   Refusal refusal;
@@ -54,7 +48,7 @@ TwoRuns two_runs() {
 
 TEST_CASE("nothing stands against the bits of a document that was just made") {
   const std::string document = small_planar().solve(plugins()).json();
-  const Rerun plan = plan_rerun(read(document), "it.json", std::nullopt, plugins());
+  const Rerun plan = plan_rerun(read_sound(document), "it.json", std::nullopt, plugins());
   CHECK(plan.differences.empty());
   CHECK(plan.unusable.ok());
   const BitComparison bits = compare_bits(document, solved(plan));
@@ -64,7 +58,7 @@ TEST_CASE("nothing stands against the bits of a document that was just made") {
 
 TEST_CASE("a run of a study starts where its predecessor ended") {
   const TwoRuns runs = two_runs();
-  const RecordedResult result = read(runs.after);
+  const RecordedResult result = read_sound(runs.after);
   const Rerun plan = plan_rerun(result, "it.json", Predecessor{"11.result.json.gz", runs.before, ""}, plugins());
   CHECK(plan.differences.empty());
   CHECK(compare_bits(runs.after, solved(plan)).same());
@@ -86,7 +80,7 @@ TEST_CASE("a predecessor that is another document than it was is told") {
   Json after = Json::parse(runs.after);
   after["provenance"]["start"]["sha256"] = std::string(64, 'a');
   const Rerun plan =
-      plan_rerun(read(after.dump()), "it.json", Predecessor{"11.result.json.gz", runs.before, ""}, plugins());
+      plan_rerun(read_sound(after.dump()), "it.json", Predecessor{"11.result.json.gz", runs.before, ""}, plugins());
   REQUIRE(plan.differences.size() == 1);
   CHECK(plan.differences[0] == "start: the run 11 that it started from: sha256 aaaaaaaaaaaa… then, " +
                                    sha256_hex(runs.before).substr(0, 12) + "… here (11.result.json.gz)");
@@ -95,14 +89,14 @@ TEST_CASE("a predecessor that is another document than it was is told") {
 TEST_CASE("a start in memory, a start document that has changed or gone") {
   const SimulationResult first = small_planar().solve(plugins());
   const std::string from_memory = small_planar().solve(plugins(), {}, first).json();
-  const Rerun lost = plan_rerun(read(from_memory), "it.json", std::nullopt, plugins());
+  const Rerun lost = plan_rerun(read_sound(from_memory), "it.json", std::nullopt, plugins());
   CHECK(lost.differences == std::vector<std::string>{"start: it was a state in memory then, which is in no document"});
 
   const TemporaryFolder folder;
   const std::string file = folder.write("first.json", first.json());
   Simulation again = small_planar();
   again.set("start.from", file);
-  const RecordedResult result = read(again.solve(plugins()).json());
+  const RecordedResult result = read_sound(again.solve(plugins()).json());
   CHECK(plan_rerun(result, "it.json", std::nullopt, plugins()).differences.empty());
   folder.write("first.json", first.json() + " ");
   const std::string then = "start '" + file + "': sha256 " + sha256_hex(first.json()).substr(0, 12) + "… then, ";

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/compare/reading.hpp"
 #include "tests/simulation/scenes.hpp"
 
 namespace bowstring {
@@ -16,17 +17,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-RecordedResult read(const std::string& text) {
-  std::vector<DocumentFlaw> flaws;
-  RecordedResult out = read_result(text, "it", flaws);
-  REQUIRE(flaws.empty());
-  return out;
-}
-
 RecordedResult solved(const char* path = nullptr, const char* value = nullptr) {
   Simulation simulation = small_planar();
   if (path != nullptr) simulation.set(path, value);
-  return read(simulation.solve(plugins()).json());
+  return read_sound(simulation.solve(plugins()).json());
 }
 
 const NumberDifference& find(const std::vector<NumberDifference>& all, const std::string& path) {
@@ -87,7 +81,7 @@ TEST_CASE("numbers of two results, with absolute and relative difference") {
 
 TEST_CASE("the distance of curves: a shift is found whole, on one mesh and between two") {
   const RecordedResult one = solved();
-  const RecordedResult moved = read(shifted(Json::parse(one.text), "iliac", 0.3, 0.4).dump());
+  const RecordedResult moved = read_sound(shifted(Json::parse(one.text), "iliac", 0.3, 0.4).dump());
   const CurveDifference same_mesh = result_differences(one, moved).curves.front();
   CHECK(same_mesh.name == "iliac");
   CHECK(std::fabs(same_mesh.largest - 0.5) < 1e-12);
@@ -95,7 +89,7 @@ TEST_CASE("the distance of curves: a shift is found whole, on one mesh and betwe
 
   const RecordedResult fine = solved("vessel.iliac.geometry.nodes", "48");
   const CurveDifference near = result_differences(one, fine).curves.front();
-  const RecordedResult far = read(shifted(Json::parse(fine.text), "iliac", 30.0, 40.0).dump());
+  const RecordedResult far = read_sound(shifted(Json::parse(fine.text), "iliac", 30.0, 40.0).dump());
   const CurveDifference between = result_differences(one, far).curves.front();
   CHECK(between.nodes_a == 24);
   CHECK(between.nodes_b == 48);
@@ -111,7 +105,7 @@ TEST_CASE("a curve that is in one alone, or not known") {
   Json document = Json::parse(one.text);
   document["curves"].erase(1);
   document["curves"][0]["points"][3] = nullptr;
-  const RecordedResult other = read(document.dump());
+  const RecordedResult other = read_sound(document.dump());
   const auto curves = result_differences(one, other).curves;
   REQUIRE(curves.size() == 2);
   CHECK(curves[0].unknown == "B has it with 'points' that are not known");

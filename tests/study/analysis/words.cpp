@@ -2,9 +2,12 @@
 
 #include <doctest/doctest.h>
 
+#include "core/composition/nearest.hpp"
+
 namespace {
 
 using namespace bowstring::study;
+using bowstring::counted;
 
 TEST_CASE("numbers as people read them") {
   CHECK(figure(9.7501) == "9.75");

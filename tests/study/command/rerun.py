@@ -4,12 +4,11 @@ plugin that was built anew it is refused, and the plugin named."""
 import json
 import os
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 
-from study_command import Command, records, require, require_equal
+from study_command import Command, ExchangedLibrary, records, require, require_equal
 
 
 def studies(command):
@@ -31,9 +30,10 @@ scene = {{ base = ["{command.scene('shallow-arch.toml')}", "{command.scene('wire
 """)
 
 
-def rerun(command, document, *options):
+def rerun(command, document, *options, environment=None):
     done = subprocess.run([command.bowstring, "rerun", str(document), *options], cwd=command.folder, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **(environment or {})},
+                          check=False)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -51,29 +51,17 @@ def same_bits(command, out):
 
 
 def refused_with_another_plugin(command, build, out):
-    """A copy of the command, with a list of plugins of its own, in which one library is exchanged."""
-    place = command.folder / "exchanged"
-    place.mkdir()
-    shutil.copy2(command.bowstring, place / "bowstring")
-    plugins = build / "plugins"
-    sidecar = json.loads((plugins / "active-set.bowstring.json").read_text())
-    library = plugins / sidecar["file"]
-    (place / library.name).write_bytes(library.read_bytes() + b"\0")
-    changed = place / "active-set.bowstring.json"
-    changed.write_text(json.dumps({**sidecar, "file": library.name}))
-    files = [str(changed) if file.name == changed.name else str(file) for file in plugins.glob("*.bowstring.json")]
-    (place / "bowstring-plugins.json").write_text(json.dumps({"sidecars": files, "not_built": []}))
-    os.environ["LD_LIBRARY_PATH"] = os.pathsep.join(str(build / folder) for folder in ("core", "plugins/host"))
-    other = Command(str(place / "bowstring"), command.source_root, command.folder)
+    other = ExchangedLibrary(command, build, "active-set")
+    other.exchange()
     refused = 0
     for record in records(out):
         document = record.with_name(record.name.replace(".json", ".result.json.gz"))
-        code, told, error = rerun(other, document)
+        code, told, error = rerun(other.command, document, environment=other.environment)
         require(code in (0, 2), f"{code}: {told}{error}")
         require((code == 2) == ("solver/active-set: sha256" in error), error)
         refused += code == 2
         if code == 2 and refused == 1:
-            code, told, error = rerun(other, document, "--force")
+            code, told, error = rerun(other.command, document, "--force", environment=other.environment)
             require_equal(code, 0, told + error)
     return refused
 

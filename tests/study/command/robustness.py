@@ -6,14 +6,13 @@ import json
 import os
 import pathlib
 import random
-import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import threading
 
-from study_command import Command, figures, records, require, require_equal, rows
+from study_command import Command, ExchangedLibrary, figures, records, require, require_equal, rows
 
 SHORT = "BOWSTRING_TEST_SHORT" in os.environ
 KILLS, COUNT, NODES = (4, 4, 20) if SHORT else (20, 10, 60)
@@ -421,36 +420,19 @@ def test_a_quantity_more_on_a_part_of_the_runs(command):
 
 
 def test_another_plugin_solves_again_what_names_it(command, build):
-    """A copy of the command, with a list of plugins of its own, in which one library is exchanged."""
-    place = command.folder / "exchanged"
-    place.mkdir()
-    copied = place / "bowstring"
-    shutil.copy2(command.bowstring, copied)
-    plugins = build / "plugins"
-    sidecars = sorted(str(file) for file in plugins.glob("*.bowstring.json"))
-
-    def list_plugins(files):
-        (place / "bowstring-plugins.json").write_text(json.dumps({"sidecars": files, "not_built": []}))
-
-    def run():
-        libraries = os.pathsep.join(str(build / folder) for folder in ("core", "plugins/host"))
-        arguments = [str(copied), *command.arguments(study, out, "--jobs", "1", "--keep", "summary")[1:]]
-        return command.run(study, out, command=arguments, environment={"LD_LIBRARY_PATH": libraries})
-
     study = small_study(command, "touched",
                         """solver = { path = "solver.type", values = ["interior-point", "active-set"] }""")
     out = command.folder / "touched"
-    list_plugins(sidecars)
+    other = ExchangedLibrary(command, build, "active-set")
+
+    def run():
+        return other.command.run(study, out, "--jobs", "1", "--keep", "summary", environment=other.environment)
+
     require_equal(run()[0], 0, "first run")
     first = figures(out)
     before = set(records(out))
     require_equal(len(before), 12, "records")
-    sidecar = json.loads((plugins / "active-set.bowstring.json").read_text())
-    library = plugins / sidecar["file"]
-    (place / library.name).write_bytes(library.read_bytes() + b"\0")
-    changed = place / "active-set.bowstring.json"
-    changed.write_text(json.dumps({**sidecar, "file": library.name}))
-    list_plugins([str(changed) if file.endswith("/active-set.bowstring.json") else file for file in sidecars])
+    other.exchange()
     code, told, error = run()
     require_equal(code, 0, told + error)
     require_equal(len(set(records(out)) - before), 6, "records of the runs that name the exchanged library")
