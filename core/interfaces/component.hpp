@@ -8,7 +8,7 @@
 namespace bowstring {
 
 /// Grows whenever a header of core/interfaces changes in a way that a built plugin would notice.
-inline constexpr std::uint32_t interface_version = 4;
+inline constexpr std::uint32_t interface_version = 5;
 inline constexpr std::uint32_t plugin_magic = 0x424f5753;  // "BOWS"
 
 /// The extension points. The names in compositions and on the command line are those of `kind_name`.

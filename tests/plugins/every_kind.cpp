@@ -9,9 +9,12 @@
 #include "core/interfaces/energy.hpp"
 #include "core/interfaces/enforcement.hpp"
 #include "core/interfaces/geometry.hpp"
+#include "core/interfaces/ground_cost.hpp"
 #include "core/interfaces/kinematics.hpp"
 #include "core/interfaces/solver.hpp"
+#include "core/interfaces/transport.hpp"
 #include "core/interfaces/writer.hpp"
+#include "core/transport/pair_costs.hpp"
 #include "plugins/host/plugin_host.hpp"
 #include "tests/plugins/plugin_folders.hpp"
 #include "tests/plugins/quadratic_problem.hpp"
@@ -255,7 +258,7 @@ TEST_CASE("integrator through the host") {
 
 TEST_CASE("ground cost through the host") {
   const auto cost = create<GroundCost>(Kind::ground_cost, "test-squared-distance");
-  Measure3 a, b;
+  Measure a, b;
   a.position = {0, 0, 0, 1, 2, 3};
   a.orientation = {1, 0, 0, 0, std::sqrt(0.5), 0, 0, std::sqrt(0.5)};  // the second turned by π/2 about z
   b.position = {1, 0, 3};
@@ -265,7 +268,12 @@ TEST_CASE("ground cost through the host") {
   CHECK(value == std::vector<double>{10.0, 4.0});
   const std::vector<double> expected = {0, 0, 0, -2, 0, -6, 0, 0, 0, 4, 0, 0};
   for (std::size_t i = 0; i < expected.size(); ++i) CHECK(gradient[i] == doctest::Approx(expected[i]));
-  CHECK(cost->lower_bound(a, b, pairs, value).code == Code::unsupported);
+  CHECK(cost->unit() == std::string("mm^2"));
+  CHECK_FALSE(cost->needs_frames());
+  CHECK_FALSE(cost->dear());
+  REQUIRE(cost->rows(a, b, 0, 2, value).ok());
+  CHECK(value == std::vector<double>{10.0, 4.0});
+  CHECK(cost->lower_bounds(a, b, 0, 2, value).code == Code::unsupported);
 }
 
 TEST_CASE("transport through the host") {
@@ -276,11 +284,16 @@ TEST_CASE("transport through the host") {
   for (const double p : x) {
     for (const double q : y) cost.push_back((p - q) * (p - q));
   }
-  TransportPlan plan;
-  REQUIRE(transport->solve(a, b, cost, plan).ok());
-  CHECK(plan.value == doctest::Approx(0.25 * 0 + 0.25 * 4 + 0.25 * 1 + 0.25 * 1));
-  CHECK(std::fabs(plan.gap) < 1e-15);
-  CHECK(transport->solve(a, b, {}, plan).code == Code::invalid_input);
+  MatrixCosts between(cost, 3, 2);
+  TransportProblem problem;
+  problem.weight_a = a;
+  problem.weight_b = b;
+  problem.between = &between;
+  TransportAnswer answer;
+  REQUIRE(transport->solve(problem, answer).ok());
+  CHECK(answer.value == doctest::Approx(0.25 * 0 + 0.25 * 4 + 0.25 * 1 + 0.25 * 1));
+  CHECK(std::fabs(answer.gap) < 1e-15);
+  CHECK_FALSE(transport->lets_mass_go());
 }
 
 TEST_CASE("projection through the host") {
@@ -294,7 +307,7 @@ TEST_CASE("projection through the host") {
 
 TEST_CASE("loss through the host") {
   const auto loss = create<Loss>(Kind::loss, "test-mean-squared-distance");
-  Measure3 predicted, observed;
+  Measure predicted, observed;
   predicted.position = {0, 0, 0, 1, 1, 1};
   observed.position = {0, 0, 2, 1, 1, 1};
   double value = 0.0;

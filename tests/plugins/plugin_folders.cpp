@@ -43,7 +43,7 @@ void TemporaryFolder::take_fixture(const std::string& name) const {
 
 void TemporaryFolder::write_sidecar(const std::string& library, const std::string& kind, const std::string& name,
                                     const std::string& abi_tag) const {
-  write(name + std::string(sidecar_suffix), R"({"file": ")" + library + R"(", "interface_version": 4, "abi_tag": ")" +
+  write(name + std::string(sidecar_suffix), R"({"file": ")" + library + R"(", "interface_version": 5, "abi_tag": ")" +
                                                 abi_tag + R"(", "components": [{"kind": ")" + kind + R"(", "name": ")" +
                                                 name + R"(", "description": ""}]})");
 }
