@@ -43,7 +43,7 @@ LawAssembly::LawAssembly(const LawUse& use, const SiteTable& site, const std::ve
   varies_ = declaration.lengths_vary;
   dimension_ = declaration.values - (varies_ ? 2 : 0);
   divides_ = description.site == Site::station || description.site == Site::edge;
-  weighs_ = description.measure == Measure::per_length && (divides_ || description.site == Site::node);
+  weighs_ = description.weighing == Weighing::per_length && (divides_ || description.site == Site::node);
   bool all = count_ == site.count();
   for (int i = 0; all && i < count_; ++i) all = place_[at(i)] == i;
   as_it_stands_ = all && !divides_ && !varies_;

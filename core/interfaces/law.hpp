@@ -9,14 +9,14 @@
 namespace bowstring {
 
 /// What a law's number is per.
-enum class Measure : int {
+enum class Weighing : int {
   per_length,  ///< a density: E = ds·W
   per_place    ///< E = W, whatever the mesh
 };
 
 struct LawDescription {
   Site site = Site::station;
-  Measure measure = Measure::per_length;
+  Weighing weighing = Weighing::per_length;
   /// Keys of the component's profile parameters (and scalars), in the order of `LawBatch::parameter`.
   std::vector<std::string> parameters;
   /// Which places of the site the law acts on, and what multiplies E there; empty: all of them, and 1. A load at an

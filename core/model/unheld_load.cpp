@@ -37,7 +37,7 @@ void add_force(const Curve& curve, const LawUse& law, double (&force)[3]) {
     batch.stress = stress;
     if (!law.law->evaluate(batch).ok()) continue;
     double weight = law.description.weight.empty() ? 1.0 : law.description.weight[k];
-    if (law.description.measure == Measure::per_length) weight *= nodes.ds[node];
+    if (law.description.weighing == Weighing::per_length) weight *= nodes.ds[node];
     for (std::size_t a = 0; a < n; ++a) force[a] -= weight * stress[a];
   }
 }

@@ -77,7 +77,7 @@ std::optional<ComponentChoice> with_number(const ComponentChoice& choice, const 
 }
 
 bool same(const LawDescription& a, const LawDescription& b) {
-  return a.site == b.site && a.measure == b.measure && a.parameters == b.parameters && a.places == b.places &&
+  return a.site == b.site && a.weighing == b.weighing && a.parameters == b.parameters && a.places == b.places &&
          a.weight == b.weight && a.linear == b.linear && a.isotropic == b.isotropic && a.objective == b.objective;
 }
 

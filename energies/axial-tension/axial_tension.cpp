@@ -41,7 +41,7 @@ class AxialTension final : public Energy {
       law_.chord = curve.end_distance;
       LawDescription description;
       description.site = Site::length;
-      description.measure = Measure::per_place;
+      description.weighing = Weighing::per_place;
       description.parameters = {"tension"};
       description.linear = true;
       out.laws = {&law_};

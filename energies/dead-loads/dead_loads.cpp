@@ -94,7 +94,7 @@ Station station_of(const ParameterValue& at, const CurveView& curve) {
 LawDescription dead_law(Site site) {
   LawDescription out;
   out.site = site;
-  out.measure = Measure::per_place;
+  out.weighing = Weighing::per_place;
   out.linear = true;
   out.objective = false;
   return out;

@@ -60,7 +60,7 @@ class Foundation final : public Energy {
       }
       LawDescription description;
       description.site = Site::node;
-      description.measure = per_node_ ? Measure::per_place : Measure::per_length;
+      description.weighing = per_node_ ? Weighing::per_place : Weighing::per_length;
       description.parameters = {"stiffness"};
       description.objective = false;
       out.laws = {&law_};

@@ -128,11 +128,11 @@ void check_chain_rule(LoneSite& site, LawAssembly& law) {
   }
 }
 
-LawUse cubic_use(const CubicLaw& law, Site site, Measure measure, int count) {
+LawUse cubic_use(const CubicLaw& law, Site site, Weighing weighing, int count) {
   LawUse use;
   use.law = &law;
   use.description.site = site;
-  use.description.measure = measure;
+  use.description.weighing = weighing;
   use.description.parameters = {"a", "b"};
   use.parameters.assign(2, std::vector<double>(at(count)));
   for (int i = 0; i < count; ++i) {
@@ -147,16 +147,16 @@ LawUse cubic_use(const CubicLaw& law, Site site, Measure measure, int count) {
 TEST_CASE("a law's chain rule is that of differences in y, fixed and varying lengths, per length and per place") {
   const CubicLaw law;
   for (const Site kind : {Site::station, Site::edge, Site::node, Site::length}) {
-    for (const Measure measure : {Measure::per_length, Measure::per_place}) {
+    for (const Weighing weighing : {Weighing::per_length, Weighing::per_place}) {
       for (const bool varying : {false, true}) {
         if (varying && kind != Site::station && kind != Site::edge) continue;
         for (const int dimension : {1, 2, 3}) {
           CAPTURE(static_cast<int>(kind));
-          CAPTURE(static_cast<int>(measure));
+          CAPTURE(static_cast<int>(weighing));
           CAPTURE(varying);
           CAPTURE(dimension);
           LoneSite site(kind, dimension, varying);
-          const LawUse use = cubic_use(law, kind, measure, places);
+          const LawUse use = cubic_use(law, kind, weighing, places);
           LawAssembly assembly(use, site.table, site.reference);
           check_chain_rule(site, assembly);
         }
@@ -168,8 +168,8 @@ TEST_CASE("a law's chain rule is that of differences in y, fixed and varying len
 TEST_CASE("energies per length are weighed by the length of material, those per place are not") {
   const CubicLaw law;
   LoneSite site(Site::node, 2, false);
-  const LawUse per_length = cubic_use(law, Site::node, Measure::per_length, places);
-  const LawUse per_place = cubic_use(law, Site::node, Measure::per_place, places);
+  const LawUse per_length = cubic_use(law, Site::node, Weighing::per_length, places);
+  const LawUse per_place = cubic_use(law, Site::node, Weighing::per_place, places);
   LawAssembly dense(per_length, site.table, site.reference), lumped(per_place, site.table, site.reference);
   const std::vector<double> by_length = ask(site, dense).stress, by_place = ask(site, lumped).stress;
   REQUIRE(largest(by_place) > 1e-3);
@@ -181,7 +181,7 @@ TEST_CASE("energies per length are weighed by the length of material, those per 
 TEST_CASE("a law acts on the places that it names, each with its weight") {
   const CubicLaw law;
   LoneSite site(Site::station, 2, true);
-  LawUse use = cubic_use(law, Site::station, Measure::per_length, 2);
+  LawUse use = cubic_use(law, Site::station, Weighing::per_length, 2);
   use.description.places = {3, 1};
   LawAssembly plain(use, site.table, site.reference);
   const Answer whole = ask(site, plain);

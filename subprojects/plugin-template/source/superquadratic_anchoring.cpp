@@ -28,12 +28,12 @@ constexpr int per_node_unit = 1;
 /// V = (k d²/m) (⟨|p − p⁰| − u₀⟩/d)^m with ⟨e⟩ = max(e, 0). README.md derives it.
 struct SuperquadraticLaw {
   double exponent;
-  Measure measure;
+  Weighing weighing;
 
   LawDescription describe() const {
     LawDescription description;
     description.site = Site::node;
-    description.measure = measure;
+    description.weighing = weighing;
     description.parameters = {"stiffness", "slack", "reference-displacement"};
     description.objective = false;
     return description;
@@ -62,12 +62,12 @@ class SuperquadraticAnchoring final : public Energy {
  public:
   explicit SuperquadraticAnchoring(const ParameterSet& parameters)
       : law_({parameters.scalar("exponent"), parameters.at("stiffness").unit_alternative == per_node_unit
-                                                 ? Measure::per_place
-                                                 : Measure::per_length}) {}
+                                                 ? Weighing::per_place
+                                                 : Weighing::per_length}) {}
 
   Status declare(const CurveView& curve, EnergyDeclaration& out) noexcept override {
     return guard([&] {
-      if (curve.extension == Extension::sliding && law_.description().measure == Measure::per_length) {
+      if (curve.extension == Extension::sliding && law_.description().weighing == Weighing::per_length) {
         throw StatusError(Code::unsupported,
                           "superquadratic-anchoring per length on '" + std::string(curve.name) +
                               "', whose length slides, would have to follow its material; put it on the vessel, give "

@@ -181,8 +181,8 @@ TEST_CASE("a position that is not a number is not mistaken for State 1") {
 
 TEST_CASE("the unit decides whether the law is per length or per node") {
   Anchoring per_length = anchoring(4.0, 0), per_node = anchoring(4.0, 1);
-  CHECK(per_length.declaration.descriptions.at(0).measure == Measure::per_length);
-  CHECK(per_node.declaration.descriptions.at(0).measure == Measure::per_place);
+  CHECK(per_length.declaration.descriptions.at(0).weighing == Weighing::per_length);
+  CHECK(per_node.declaration.descriptions.at(0).weighing == Weighing::per_place);
   CHECK(per_node.declare(Extension::sliding).ok());
   const Status status = per_length.declare(Extension::sliding);
   CHECK(status.code == Code::unsupported);
