@@ -169,7 +169,7 @@ class ExactLemon final : public Transport {
       return !(cost[static_cast<std::size_t>(arc.row) * masses.demand.size() + static_cast<std::size_t>(arc.column)] <
                barrier);
     };
-    if (std::any_of(out.plan.begin(), out.plan.end(), barred)) return std::nullopt;
+    if (std::any_of(out.basis.begin(), out.basis.end(), barred)) return std::nullopt;
     simplex::join_potentials(cost, barrier, found.row, found.column, out.row, out.column);
     return out;
   }

@@ -34,6 +34,8 @@ class NetworkSimplex {
 
   /// Arcs with more mass than noise, by node.
   std::vector<Arc> plan() const { return tree_.arcs(masses_.noise); }
+  /// Arcs of the tree.
+  std::vector<Arc> basis() const { return tree_.arcs(-1); }
   /// Potentials: row[i] + column[j] ≤ cost[i][j], equal on the plan. Places without mass have the largest ones; 0 where
   /// all their pairs are forbidden.
   const std::vector<double>& row_potential() const noexcept { return row_potential_; }
