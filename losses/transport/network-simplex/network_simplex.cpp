@@ -8,7 +8,6 @@
 
 #include "losses/transport/network-simplex/barred_cost.hpp"
 #include "losses/transport/network-simplex/pricing.hpp"
-#include "losses/transport/network-simplex/row_kernels.hpp"
 #include "losses/transport/network-simplex/start.hpp"
 
 namespace bowstring::simplex {
@@ -164,21 +163,24 @@ bool NetworkSimplex::solve(const double* cost) {
 
 void NetworkSimplex::price_places_without_mass(const double* cost) {
   const std::size_t rows = masses_.supply.size(), columns = masses_.demand.size();
+  const auto room = [&](std::size_t i, std::size_t j, double potential) {
+    const double of_pair = cost[i * columns + j];
+    return of_pair < barrier_ ? of_pair - potential : infinity;
+  };
   for (std::size_t j = 0; j < columns; ++j) {
     if (masses_.demand[j] > 0) continue;
     double least = infinity;
     for (const int row : order_) {
       const auto i = static_cast<std::size_t>(row);
-      least = std::min(least, cost[i * columns + j] - row_potential_[i]);
+      least = std::min(least, room(i, j, row_potential_[i]));
     }
     column_potential_[j] = std::isinf(least) ? 0.0 : least;
   }
-  std::vector<double> negated(column_potential_);
-  for (double& value : negated) value = -value;
   for (std::size_t i = 0; i < rows; ++i) {
     if (masses_.supply[i] > 0) continue;
-    const Minimum least = row_minimum(cost + i * columns, negated.data(), static_cast<int>(columns));
-    row_potential_[i] = std::isinf(least.value) ? 0.0 : least.value;
+    double least = infinity;
+    for (std::size_t j = 0; j < columns; ++j) least = std::min(least, room(i, j, column_potential_[j]));
+    row_potential_[i] = std::isinf(least) ? 0.0 : least;
   }
 }
 
