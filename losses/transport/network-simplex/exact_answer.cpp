@@ -120,9 +120,12 @@ Look look_at_reduced_costs(const double* cost, const Masses& masses, const Verte
   return out;
 }
 
-/// Of pairs of places with mass, those without reduced cost that are no arcs with mass themselves.
-std::vector<Link> idle_tight_arcs(const double* cost, const Masses& masses, const Vertex& vertex, double tolerance) {
-  std::vector<Link> out, with_mass;
+/// Visits the pairs of places with mass that have no reduced cost and are no arcs with mass themselves, until `visit`
+/// says false.
+template <class Visit>
+void for_each_idle_tight_arc(const double* cost, const Masses& masses, const Vertex& vertex, double tolerance,
+                             const Visit& visit) {
+  std::vector<Link> with_mass;
   for (const Arc& arc : vertex.basis) {
     if (arc.mass > masses.noise) with_mass.emplace_back(arc.row, arc.column);
   }
@@ -133,14 +136,14 @@ std::vector<Link> idle_tight_arcs(const double* cost, const Masses& masses, cons
   for (std::size_t i = 0; i < vertex.row.size(); ++i) {
     for (std::size_t j = 0; j < columns; ++j) {
       const Link arc(static_cast<int>(i), static_cast<int>(j));
+      const double reduced = cost[i * columns + j] + add[j] - vertex.row[i];
       if (next != with_mass.end() && *next == arc) {
         ++next;
-      } else if (masses.supply[i] > 0 && cost[i * columns + j] + add[j] - vertex.row[i] <= tolerance) {
-        out.push_back(arc);
+      } else if (masses.supply[i] > 0 && reduced <= tolerance && !visit(arc, reduced)) {
+        return;
       }
     }
   }
-  return out;
 }
 
 bool is_tight(const Arc& arc, const double* cost, const Vertex& vertex, double tolerance) {
@@ -168,15 +171,21 @@ void judge_uniqueness(const double* cost, const Masses& masses, const Look& look
     if (arc.mass > masses.noise) tree.join(arc.row, first_column + arc.column);
   }
   Sets with_mass = tree;
+  const std::size_t nodes = vertex.row.size() + columns;
   std::vector<Link> between;
-  for (const auto& [row, column] : idle_tight_arcs(cost, masses, vertex, tolerance)) {
-    between.emplace_back(with_mass.of(row), with_mass.of(first_column + column));
-    out.multiple = out.multiple || between.back().first == between.back().second;
-    if (tree.join(row, first_column + column)) continue;
-    const auto i = static_cast<std::size_t>(row), j = static_cast<std::size_t>(column);
-    out.slack = std::min(out.slack, std::max(cost[i * columns + j] - vertex.row[i] - vertex.column[j], 0.0));
-  }
-  out.multiple = out.multiple || has_cycle(between, vertex.row.size() + columns);
+  std::size_t enough = 8 * nodes;  // ties may be many, and a few of them tell
+  for_each_idle_tight_arc(cost, masses, vertex, tolerance, [&](const Link& arc, double reduced) {
+    const int column = first_column + arc.second;
+    between.emplace_back(with_mass.of(arc.first), with_mass.of(column));
+    out.multiple = between.back().first == between.back().second;
+    if (!tree.join(arc.first, column)) out.slack = std::min(out.slack, std::max(reduced, 0.0));
+    if (between.size() < enough) return !out.multiple;
+    enough *= 2;
+    out.multiple = out.multiple || has_cycle(between, nodes);
+    return !out.multiple;
+  });
+  out.multiple = out.multiple || has_cycle(between, nodes);
+  if (out.multiple) out.slack = 0.0;
 }
 
 std::string number(double value) {

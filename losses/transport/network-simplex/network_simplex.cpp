@@ -58,12 +58,10 @@ std::vector<double> column_reduction(const std::vector<int>& rows, const double*
 }  // namespace
 
 void NetworkSimplex::set_masses(Masses masses) {
-  if (has_tree() && masses.supply == masses_.supply && masses.demand == masses_.demand) {
-    masses_.quantum = masses.quantum;
-    return;
-  }
-  const bool kept = has_tree() && same_places(masses.supply, masses_.supply) &&
-                    same_places(masses.demand, masses_.demand) && tree_.carry(masses.supply, masses.demand);
+  const bool same = masses.supply == masses_.supply && masses.demand == masses_.demand;
+  const bool kept =
+      has_tree() && (same || (same_places(masses.supply, masses_.supply) &&
+                              same_places(masses.demand, masses_.demand) && tree_.carry(masses.supply, masses.demand)));
   masses_ = std::move(masses);
   if (kept) return;
   tree_.clear();
