@@ -84,7 +84,7 @@ void NetworkSimplex::pivot_to_optimum(Prices& prices) {
   // Potentials that are moved gather rounding, and what pays has to exceed that of the largest one since they were
   // computed. So they are computed anew now and then, and the end is looked at once more after many moves, or where the
   // largest one has become much smaller.
-  constexpr long moves = 256, few = 32;
+  constexpr long moves = 128, few = 32;
   prices.compute(tree_);
   for (bool again = true; again;) {
     const long before = pivots_;

@@ -10,7 +10,7 @@ namespace bowstring::simplex {
 namespace {
 
 /// What rounding may amount to in a reduced cost, relative to the largest potential: it has gathered over some pivots.
-constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
 
 /// Of a column outside the tree, more often than any arc of it is barred.
 constexpr long never = 1L << 40;
