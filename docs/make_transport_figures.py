@@ -11,7 +11,7 @@ import os
 import subprocess
 import sys
 
-WIDTH, HEIGHT = 900, 520
+WIDTH, HEIGHT = 900, 548
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT, GAP_X, GAP_Y = 70, 56, 350, 175, 100, 62
 
 

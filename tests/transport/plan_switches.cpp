@@ -75,7 +75,7 @@ TEST_CASE("a closed curve turned through many switches") {
   TransportComparison transport = exact();
   const MovingMeasure knot = turning_knot(24);
   const Measure standing = turning_knot(24).at(0.0);
-  const std::vector<WalkPoint> walk = walk_plans(transport, knot, standing, 0.02, 1.0, 30);
+  const std::vector<WalkPoint> walk = walk_plans(transport, knot, standing, 0.02, 2.0, 40);
   int switches = 0;
   double widest = 0.0;
   for (const WalkPoint& point : walk) {
