@@ -222,6 +222,10 @@ bool read_patient_axes(const Json& composition) {
 
 Result read_result(const char* json) {
   const Json document = parse(json);
+  if (text(document, "format") == "bowstring.transport/1") {
+    throw StatusError(Code::unsupported,
+                      "this writer takes results, and no comparison of measures; choose another, as svg, or --out");
+  }
   if (text(document, "format") != "bowstring.result/1") {
     refuse("format", found(member(document, "format")), "\"bowstring.result/1\"");
   }
