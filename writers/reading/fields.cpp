@@ -21,7 +21,7 @@ std::string found(const Json& value) {
   return value.is_string() ? "\"" + value.get<std::string>() + "\"" : value.type_name();
 }
 
-Json parse(const char* text, const char* format) {
+Json parse(const char* text) {
   try {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
@@ -30,7 +30,7 @@ Json parse(const char* text, const char* format) {
     const char* start = stop;
     while (start != text && start[-1] != '\n') --start;
     refuse("line " + std::to_string(line) + ", column " + std::to_string(stop - start + 1), "text that is not JSON",
-           "a \"" + std::string(format) + "\" document");
+           "a \"bowstring.result/1\" document");
   }
 }
 

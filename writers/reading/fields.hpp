@@ -21,8 +21,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 /// What stands there, for messages.
 std::string found(const Json& value);
 
-/// `format`: what was expected to be read.
-Json parse(const char* text, const char* format);
+Json parse(const char* text);
 
 /// A member, or null where the table has none.
 const Json& member(const Json& table, const char* key);

@@ -152,7 +152,7 @@ bool read_patient_axes(const Json& composition) {
 }  // namespace
 
 Result read_result(const char* json) {
-  const Json document = fields::parse(json, "bowstring.result/1");
+  const Json document = fields::parse(json);
   if (text(document, "format") == "bowstring.transport/1") {
     throw StatusError(Code::unsupported,
                       "this writer takes results, and no comparison of measures; choose another, as svg, or --out");

@@ -51,7 +51,7 @@ void read_plan(const Json& document, TransportPicture& out) {
 }  // namespace
 
 std::optional<TransportPicture> read_transport(const char* text) {
-  const Json document = fields::parse(text, "bowstring.transport/1");
+  const Json document = fields::parse(text);
   if (fields::text(document, "format") != "bowstring.transport/1") return std::nullopt;
   TransportPicture out;
   out.method = fields::text(fields::member(document, "method"), "type");
