@@ -6,6 +6,7 @@
 #include <random>
 #include <utility>
 
+#include "losses/transport/network-simplex/barred_cost.hpp"
 #include "losses/transport/network-simplex/pricing.hpp"
 #include "losses/transport/network-simplex/row_minimum.hpp"
 #include "losses/transport/network-simplex/start.hpp"
@@ -133,10 +134,9 @@ bool NetworkSimplex::solve_barred(const double* cost, double barrier) {
 }
 
 bool NetworkSimplex::solve(const double* cost) {
-  warm_ = !tree_.empty();
   pivots_ = 0;
   barrier_ = infinity;
-  if (!warm_) start(cost);
+  if (tree_.empty()) start(cost);
   const bool plain = !tree_has(cost, infinity, false);
   if (plain) solve_plain(cost);
   if (!plain || drowned(cost)) {

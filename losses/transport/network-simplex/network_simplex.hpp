@@ -24,6 +24,8 @@ class NetworkSimplex {
   void set_masses(Masses masses);
   const Masses& masses() const noexcept { return masses_; }
   void forget() noexcept { tree_.clear(); }
+  /// The next call starts warm.
+  bool has_tree() const noexcept { return !tree_.empty(); }
 
   /// `cost`: rows × columns, row major; +∞ forbids. Costs that are huge beside the others, and that the plan does not
   /// need, do not drown these. False where there is no plan without forbidden pairs: then `plan` has as little mass as
@@ -39,7 +41,6 @@ class NetworkSimplex {
   /// Costs from here on were found to be out of all proportion to those that the plan uses; else +∞.
   double barrier() const noexcept { return barrier_; }
 
-  bool warm() const noexcept { return warm_; }      ///< the last call had a tree to start from
   long pivots() const noexcept { return pivots_; }  ///< of the last call
   std::size_t memory_bytes() const noexcept;
 
@@ -58,7 +59,6 @@ class NetworkSimplex {
   std::vector<int> order_;  // rows with mass, shuffled: rows along a curve are the worst order to price in
   std::vector<double> row_potential_, column_potential_;
   double barrier_ = 0.0;
-  bool warm_ = false;
   long pivots_ = 0;
 };
 

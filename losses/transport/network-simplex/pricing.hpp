@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "losses/transport/network-simplex/barred_cost.hpp"
 #include "losses/transport/network-simplex/spanning_tree.hpp"
 
 namespace bowstring::simplex {
@@ -10,7 +11,7 @@ namespace bowstring::simplex {
 /// An arc that pays to enter: its reduced cost c − u − v is below zero by more than rounding.
 struct Candidate {
   int row = -1, column = -1;
-  long barred = 0;            ///< of its reduced cost, the part that counts first: see BarredPricing
+  long barred = 0;            ///< of its reduced cost, the part that counts first: see BarredCost
   double reduced_cost = 0.0;  ///< the other part
 
   bool found() const noexcept { return row >= 0; }
@@ -38,8 +39,7 @@ class Pricing {
   std::vector<double> potential_;
 };
 
-/// The same where costs of `barrier` and more come after all others: (1, 0) against (0, c), compared by the first part,
-/// then by the second. What is barred can then neither drown the others in its rounding nor, infinite, make NaN.
+/// The same where costs of `barrier` and more are barred.
 class BarredPricing {
  public:
   BarredPricing(const double* cost, int rows, int columns, double barrier);
@@ -47,27 +47,17 @@ class BarredPricing {
   void compute(const SpanningTree& tree);
   void offer(int row, Candidate& best) const noexcept;
   void move(const SpanningTree& tree, const SpanningTree::Part& part, const Candidate& entered) noexcept;
-  /// Of an optimum without mass on barred arcs: plain numbers. Its potentials (p, q) are joined to t p + q with the
-  /// least t ≥ 0 that leaves no arc below the barrier with a negative reduced cost.
+  /// Of an optimum without mass on barred arcs, as plain numbers.
   void hand_over(std::vector<double>& row, std::vector<double>& column) const;
 
  private:
-  struct Potential {
-    long barred = 0;
-    double cost = 0.0;
-    bool in_tree = false;
-  };
-  Potential cost_of(int row, int column) const noexcept;
+  BarredCost cost_of(int row, int column) const noexcept;
 
   const double* cost_;
   int rows_, columns_;
   double barrier_;
   double largest_ = 0.0;
-  std::vector<Potential> potential_;
+  std::vector<BarredCost> potential_;
 };
-
-/// From where on costs are to be barred: above a gap so wide that a plan without those beyond is better than any with
-/// them, and their rounding would be felt in the others. +∞ where there is no such gap.
-double find_barrier(const double* cost, std::size_t rows, std::size_t columns);
 
 }  // namespace bowstring::simplex

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/interfaces/transport.hpp"
+#include "losses/transport/network-simplex/spanning_tree.hpp"
+
+namespace bowstring::simplex {
+
+/// The costs of a problem as one matrix, row major: the caller's where it stands in memory, else one of our own, which
+/// is kept for the next problem. Where costs are dear it begins with their lower bounds.
+class DenseCosts {
+ public:
+  /// Throws the StatusError of what fails.
+  void load(PairCosts& source);
+  const double* data() const noexcept { return data_; }
+  /// Puts costs in the place of bounds on these arcs; how many of them were bounds.
+  std::size_t evaluate(const std::vector<Arc>& arcs);
+
+  std::size_t memory_bytes() const noexcept { return own_.capacity() * sizeof(double) + evaluated_.capacity() / 8; }
+
+ private:
+  PairCosts* source_ = nullptr;
+  const double* data_ = nullptr;
+  std::vector<double> own_;
+  std::vector<bool> evaluated_;  // empty where all of them are
+};
+
+}  // namespace bowstring::simplex
