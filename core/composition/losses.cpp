@@ -61,6 +61,18 @@ void read_observed(const Node& value, const std::string& owner, LossTable& loss,
   loss.observed = std::make_shared<const GivenMeasure>(std::move(*given));
 }
 
+/// Weights that draw a curve toward stations or wide places say nothing beside places that all count the same.
+void check_weights(const Node& table, const std::string& owner, const LossTable& loss, Report& report) {
+  const bool drawn = !loss.sampling.stations.empty() || loss.sampling.weights == CurveWeights::lumen_section;
+  if (!drawn || loss.observed == nullptr || loss.observed->is_curve || loss.observed->has_weights) return;
+  const char* key = loss.sampling.stations.empty() ? "weights" : "stations";
+  report.error(
+      table.find(key)->position, "'" + std::string(key) + "' of " + owner + " against places that have no weights",
+      "both drawn alike",
+      "write against = \"FILE.csv#curve\" where the rows of the file are a curve in order, or give it a column "
+      "'weight'");
+}
+
 }  // namespace
 
 Span<const ParameterDeclaration> loss_schema() {
@@ -109,6 +121,7 @@ LossTable read_loss(const Node& table, const CurveNames& names, Reading& reading
     reading.report.error(table.position, owner + " has no 'against'", "what the curve is compared with",
                          "add against = \"observed.csv\" or against = \"result.json#iliac\"");
   }
+  check_weights(table, owner, loss, reading.report);
   loss.transport = read_component_of(table, "transport", Kind::transport, "exact", owner, reading);
   loss.ground_cost = read_component_of(table, "ground-cost", Kind::ground_cost, "euclidean", owner, reading);
   return loss;

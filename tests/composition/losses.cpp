@@ -130,6 +130,14 @@ TEST_CASE("errors of a file that is compared with stand at the place that names 
           "scene.toml:30:11: 'against' of loss 'loss': " + file +
               ":4: place 2: weight -1; expected a finite number, not negative; leave the place out or mend it"});
   CHECK(
+      bench.errors(Bench::scene("on = \"w\"\nagainst = \"observed.csv\"\nstations = [{ at = 1, spread = 1 }]\n")) ==
+      Texts{
+          "scene.toml:31:1: 'stations' of loss 'loss' against places that have no weights; expected both drawn alike; "
+          "write against = \"FILE.csv#curve\" where the rows of the file are a curve in order, or give it a column "
+          "'weight'"});
+  CHECK(bench.errors(Bench::scene("on = \"w\"\nagainst = \"observed.csv\"\nweights = \"lumen-section\"\n")).size() ==
+        1);
+  CHECK(
       bench.errors(Bench::scene("on = \"w\"\nagainst = \"none.csv\"\n")) ==
       Texts{
           "scene.toml:30:11: 'against' of loss 'loss': 'none.csv' cannot be read (No such file or directory); "
