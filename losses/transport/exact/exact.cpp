@@ -24,7 +24,7 @@ class Exact final : public Transport {
 
  private:
   void solve_or_throw(const TransportProblem& problem, TransportAnswer& out) {
-    costs_.load(*problem.between);
+    costs_.load_bounds(*problem.between);
     simplex_.set_masses(simplex::masses_of(problem.weight_a, problem.weight_b));
     out = {};
     out.warm = simplex_.has_tree();

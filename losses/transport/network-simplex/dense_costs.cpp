@@ -15,18 +15,27 @@ void require(const Status& status) {
 }  // namespace
 
 void DenseCosts::load(PairCosts& source) {
-  source_ = &source;
   evaluated_.clear();
   data_ = source.matrix();
   if (data_ != nullptr) return;
-  own_.resize(static_cast<std::size_t>(source.row_count()) * static_cast<std::size_t>(source.column_count()));
-  data_ = own_.data();
-  if (!source.dear()) return require(source.rows(0, source.row_count(), own_));
+  make_room(source);
+  require(source.rows(0, source.row_count(), own_));
+}
+
+void DenseCosts::load_bounds(PairCosts& source) {
+  if (!source.dear() || source.matrix() != nullptr) return load(source);
+  source_ = &source;
+  make_room(source);
   require(source.lower_bounds(0, source.row_count(), own_));
   if (!std::all_of(own_.begin(), own_.end(), [](double bound) { return std::isfinite(bound); })) {
     throw StatusError(Code::failed, "a lower bound of the ground cost is not finite");
   }
   evaluated_.assign(own_.size(), false);
+}
+
+void DenseCosts::make_room(const PairCosts& source) {
+  own_.resize(static_cast<std::size_t>(source.row_count()) * static_cast<std::size_t>(source.column_count()));
+  data_ = own_.data();
 }
 
 std::size_t DenseCosts::evaluate(const std::vector<Arc>& arcs) {
