@@ -176,9 +176,14 @@ std::vector<double> node_frames(const NodalCurve& curve) { return transported_fr
 Status measure_of_curve(const NodalCurve& curve, const CurveSampling& sampling, CurveMeasure& out) {
   if (Status status = check(curve, sampling); !status.ok()) return status;
   const std::vector<double> arc = polyline_arc(curve.points, 3);
+  if (!std::isfinite(arc.back())) return flawed("a curve of more than the largest number of mm; expected a length");
   if (!(arc.back() > 0.0)) return flawed("a curve without length: its nodes are one point; expected nodes apart");
   Places places = sampling.points > 0 ? resampled(curve, arc, sampling.points) : at_nodes(curve, arc);
   out.measure.weight = weights_of(places, sampling);
+  for (const double weight : out.measure.weight) {
+    if (!std::isfinite(weight))
+      return flawed("weights beyond the largest number; expected radii and stations below it");
+  }
   out.measure.orientation = transported_frames(places.tangent);
   out.measure.position = std::move(places.position);
   out.arc = std::move(places.arc);

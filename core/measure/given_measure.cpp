@@ -21,9 +21,10 @@ bool begins_as_json(const std::string& text) {
 }  // namespace
 
 MeasureName measure_name(const std::string& text) {
-  const std::size_t mark = text.rfind('#');
+  const std::size_t mark = text.rfind('#'), slash = text.rfind('/');
+  const bool of_folder = slash != std::string::npos && mark != std::string::npos && mark < slash;
   std::error_code ignored;
-  if (mark == std::string::npos || std::filesystem::exists(text, ignored)) return {text, ""};
+  if (mark == std::string::npos || of_folder || std::filesystem::exists(text, ignored)) return {text, ""};
   return {text.substr(0, mark), text.substr(mark + 1)};
 }
 

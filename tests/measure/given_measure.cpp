@@ -42,6 +42,7 @@ std::string refusal(const std::string& name, const std::string& text, const Curv
 
 TEST_CASE("a name's last '#' begins the name of a curve") {
   CHECK(measure_name("a.csv").curve == "");
+  CHECK(measure_name("b#c/a.csv").file == "b#c/a.csv");
   CHECK(measure_name("b#c/r.json#iliac").file == "b#c/r.json");
   CHECK(measure_name("b#c/r.json#iliac").curve == "iliac");
   CHECK(measure_name("r.json#iliac").text() == "r.json#iliac");
