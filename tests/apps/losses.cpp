@@ -137,6 +137,14 @@ TEST_CASE("losses: what cannot be computed is refused before anything is solved"
                                      "\"observed.csv#curve\"\n")),
                "scene.toml:6:11: 'against' of loss 'loss': DIR/observed.csv#curve: weights 'lumen-section' of a curve "
                "whose radius is not known; "));
+  // A station beyond the curve counts for nothing, which is said.
+  folder.write("scene.toml",
+               scene("[[loss]]\non = \"iliac\"\nagainst = \"observed.csv#curve\"\nstations = [{ at = \"900 mm\", "
+                     "spread = \"1 cm\" }]\n"));
+  const CommandResult beyond = bowstring_command(folder.path(), {"solve", "scene.toml"});
+  CHECK(beyond.exit_code == 0);
+  CHECK(
+      contains(beyond.err, "warning: the station at 900 mm of loss 'loss' lies beyond the end of 'iliac', which is "));
   // Never over what is compared with.
   folder.write("scene.toml", scene(loss));
   const CommandResult over = bowstring_command(folder.path(), {"solve", "scene.toml", "--out", "observed.csv"});
