@@ -28,8 +28,7 @@ class InteriorPoint {
 
   Iterate run() {
     start();
-    const double cost_scale = cost_.maxCoeff() > 0.0 ? std::min(rho_, cost_.maxCoeff()) : rho_;
-    const double scale = cost_scale * (a_.sum() + b_.sum());
+    const double scale = cost_scale(cost_, rho_) * (a_.sum() + b_.sum());
     Iterate best;
     double least = HUGE_VAL;
     int since_best = 0;
@@ -127,6 +126,11 @@ class InteriorPoint {
 };
 
 }  // namespace
+
+double cost_scale(const Matrix& cost, double weight) {
+  const double largest = cost.min(far * weight).abs().maxCoeff();
+  return largest > 0.0 ? std::min(weight, largest) : weight;
+}
 
 Iterate solve_by_interior_point(const Problem& problem) { return InteriorPoint(problem).run(); }
 
