@@ -10,9 +10,9 @@
 namespace bowstring::unbalanced {
 namespace {
 
-constexpr double wanted = 1e-15, tolerable = 1e-9;
-constexpr double cooling = 0.25;  // from one ε to the next
-constexpr int most_iterations = 60, without_gain = 8;
+constexpr double wanted = 1e-28, good = 1e-14, tolerable = 1e-9;  // the gap is a square of what is off in the duals
+constexpr double cooling = 0.25;                                  // from one ε to the next
+constexpr int most_iterations = 60;
 
 class Entropic {
  public:
@@ -42,11 +42,11 @@ class Entropic {
   }
 
   Iterate finish() {
-    const double mass = a_.sum() + b_.sum();
+    const double mass = a_.sum() + b_.sum(), scale = cost_scale(cost_, rho_) * mass;
     Iterate best;
     double least = HUGE_VAL;
     bool near = false;
-    for (int k = 0, since_best = 0; k < most_iterations && since_best < without_gain; ++k) {
+    for (int k = 0, since_best = 0; k < most_iterations && since_best < (least <= good * scale ? 2 : 8); ++k) {
       if (!near) scale_both();
       near = newton() < 0.5;
       const double gap = measure();
@@ -55,7 +55,7 @@ class Entropic {
         least = gap;
         best = {u_, v_, plan_, 0, 0};
       }
-      if (least <= wanted * cost_scale(cost_, rho_) * mass) break;
+      if (least <= wanted * scale) break;
     }
     if (!(least <= tolerable * rho_ * mass)) {
       throw StatusError(Code::failed, "scaling ended with a duality gap of " + std::to_string(least / (rho_ * mass)) +

@@ -11,7 +11,7 @@ namespace bowstring::unbalanced {
 /// at ε that come down by four from the mean cost; near the end Newton's alone. γ_ij = a_i b_j e^{(u_i + v_j −
 /// c_ij)/ε}, and the duality gap is
 ///   ρ Σ (γ1 log(γ1/a e^{−u/ρ}) − γ1 + a e^{−u/ρ}) + the same of b.
-/// It ends where this is 1e-15 of the masses times `cost_scale` or gets no better. Rows ≤ columns. Throws a StatusError
+/// It ends where this is 1e-28 of the masses times `cost_scale` or gets no better. Rows ≤ columns. Throws a StatusError
 /// (`failed`) where it stays above 1e-9 of the masses times ρ.
 Iterate solve_by_scaling(const Problem& problem);
 

@@ -34,7 +34,7 @@ double cost_scale(const Matrix& cost, double weight);
 ///   a_i e^{−u_i/ρ} = Σ_j γ_ij,   b_j e^{−v_j/ρ} = Σ_i γ_ij,   s_ij = c_ij − u_i − v_j > 0,   γ_ij s_ij = μ → 0.
 /// The plan has no sums to keep and u, v none but s > 0, so that each iterate bounds the optimum from both sides, by
 ///   Σ γ s + ρ Σ (γ1 log(γ1/a e^{−u/ρ}) − γ1 + a e^{−u/ρ}) + the same of b.
-/// It ends where this is 1e-15 of the masses times `cost_scale` or gets no better.
+/// It ends where this is 1e-18 of the masses times `cost_scale` or gets no better.
 /// Rows ≤ columns. Throws a StatusError (`failed`) where that bound stays above 1e-9 of it.
 Iterate solve_by_interior_point(const Problem& problem);
 
