@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "plugins/sdk/guard.hpp"
 
@@ -13,6 +14,8 @@ namespace {
 struct Entry {
   Eigen::Index row, column;
   double mass;
+
+  friend bool operator==(const Entry&, const Entry&) = default;
 };
 
 std::vector<Entry> entries_of(const Matrix& plan) {
@@ -60,11 +63,83 @@ class Gradient {
   Vector moment_a_, moment_b_;
 };
 
-/// Where linear τ + quadratic τ² is least in [0, 1].
-double best_step(double linear, double quadratic) {
-  if (quadratic > 0.0) return std::clamp(-linear / (2.0 * quadratic), 0.0, 1.0);
-  return linear + quadratic < 0.0 ? 1.0 : 0.0;
+/// Where linear τ + quadratic τ² is least in [0, most].
+double best_step(double linear, double quadratic, double most) {
+  if (quadratic > 0.0) return std::clamp(-linear / (2.0 * quadratic), 0.0, most);
+  return linear + quadratic * most < 0.0 ? most : 0.0;
 }
+
+/// A plan as shares of others, the start and vertices.
+class Mixture {
+ public:
+  explicit Mixture(const Matrix& plan) : plan_(plan), atoms_{{entries_of(plan), 1.0}} {}
+
+  const Matrix& plan() const noexcept { return plan_; }
+  double share(std::size_t k) const { return atoms_[k].share; }
+  Matrix atom(std::size_t k) const {
+    Matrix out = Matrix::Zero(plan_.rows(), plan_.cols());
+    add(atoms_[k], 1.0, out);
+    return out;
+  }
+
+  /// The one that costs most.
+  std::size_t worst(const Matrix& cost) const {
+    std::size_t out = 0;
+    double most = -HUGE_VAL;
+    for (std::size_t k = 0; k < atoms_.size(); ++k) {
+      double sum = 0.0;
+      for (const Entry& entry : atoms_[k].entries) sum += entry.mass * cost(entry.row, entry.column);
+      if (sum > most) {
+        most = sum;
+        out = k;
+      }
+    }
+    return out;
+  }
+
+  /// Some of the share of one goes to `vertex`.
+  void exchange(std::size_t from, const Matrix& vertex, double share) {
+    add(atoms_[from], -share, plan_);
+    Atom to{entries_of(vertex), share};
+    add(to, share, plan_);
+    const bool all = share >= atoms_[from].share;
+    atoms_[from].share -= share;
+    const auto known =
+        std::find_if(atoms_.begin(), atoms_.end(), [&to](const Atom& atom) { return atom.entries == to.entries; });
+    if (known == atoms_.end()) {
+      atoms_.push_back(std::move(to));
+    } else {
+      known->share += share;
+    }
+    if (all) atoms_.erase(atoms_.begin() + static_cast<std::ptrdiff_t>(from));
+  }
+
+  /// The plan anew, with zeros where none of them has mass.
+  Matrix summed() const {
+    Matrix out = Matrix::Zero(plan_.rows(), plan_.cols());
+    for (const Atom& atom : atoms_) add(atom, atom.share, out);
+    return out;
+  }
+
+  std::size_t memory_bytes() const {
+    std::size_t out = 0;
+    for (const Atom& atom : atoms_) out += atom.entries.capacity() * sizeof(Entry);
+    return out;
+  }
+
+ private:
+  struct Atom {
+    std::vector<Entry> entries;
+    double share;
+  };
+
+  static void add(const Atom& atom, double factor, Matrix& out) {
+    for (const Entry& entry : atom.entries) out(entry.row, entry.column) += factor * entry.mass;
+  }
+
+  Matrix plan_;
+  std::vector<Atom> atoms_;
+};
 
 [[noreturn]] void refuse(double gap, double scale, const Settings& settings) {
   char text[256];
@@ -117,29 +192,45 @@ Stationary descend(const Problem& problem, const Matrix& start, const Settings& 
   constexpr double rounding = 1e-14;
   const Gradient gradient(problem);
   const double scale = scale_of(problem);
+  const auto crossed_of = [&problem](const Matrix& plan) -> Matrix {
+    return problem.structure_a * plan * problem.structure_b;
+  };
+  const auto curvature = [&problem](const Matrix& change, const Matrix& crossed) {
+    return -2.0 * problem.alpha * crossed.cwiseProduct(change).sum();
+  };
   Stationary out;
-  out.plan = start;
-  Matrix crossed = problem.structure_a * start * problem.structure_b;
+  Mixture mixture(start);
+  Matrix crossed = crossed_of(start);
   for (;; ++out.iterations) {
     const Matrix slope = gradient(crossed);
     if (!simplex.solve(slope.data())) throw StatusError(Code::failed, "a linear program of the method has no plan");
     out.pivots += simplex.pivots();
-    const Matrix vertex = vertex_of(simplex), vertex_crossed = problem.structure_a * vertex * problem.structure_b;
-    const Matrix change = vertex - out.plan, change_crossed = vertex_crossed - crossed;
+    const Matrix vertex = vertex_of(simplex), vertex_crossed = crossed_of(vertex), change = vertex - mixture.plan();
     const double linear = slope.cwiseProduct(change).sum();
-    const double quadratic = -2.0 * problem.alpha * change_crossed.cwiseProduct(change).sum();
-    const double step = best_step(linear, quadratic);
-    const double gain = -(linear * step + quadratic * step * step);
+    const double quadratic = curvature(change, vertex_crossed - crossed);
     out.gap = std::max(0.0, -linear);
-    if (gain <= rounding * scale || (out.gap <= settings.tolerance * scale && quadratic >= 0.0)) break;
+    const bool whole = quadratic <= 0.0 && linear + quadratic < -rounding * scale;
+    if (!whole && out.gap <= settings.tolerance * scale) break;
     if (out.iterations >= settings.max_iterations) refuse(out.gap, scale, settings);
-    // A whole step is taken as such: the plan is then the vertex, with its zeros.
-    out.plan = step == 1.0 ? vertex : Matrix(out.plan + step * change);
-    crossed = step == 1.0 ? vertex_crossed : Matrix(crossed + step * change_crossed);
+    if (whole) {
+      mixture = Mixture(vertex);
+      crossed = vertex_crossed;
+      continue;
+    }
+    const std::size_t worst = mixture.worst(slope);
+    const Matrix exchange = vertex - mixture.atom(worst), exchange_crossed = crossed_of(exchange);
+    const double step =
+        best_step(slope.cwiseProduct(exchange).sum(), curvature(exchange, exchange_crossed), mixture.share(worst));
+    mixture.exchange(worst, vertex, step);
+    out.memory_bytes = std::max(out.memory_bytes, mixture.memory_bytes());
+    crossed += step * exchange_crossed;
   }
   out.row = simplex.row_potential();
   out.column = simplex.column_potential();
+  out.plan = mixture.summed();
   out.value = value_of(problem, out.plan);
+  const Eigen::Index held = 8 * out.plan.size() + problem.structure_a.size() + problem.structure_b.size();
+  out.memory_bytes += static_cast<std::size_t>(held) * sizeof(double);
   return out;
 }
 

@@ -28,6 +28,7 @@ struct Stationary {
   double gap = 0.0;                 ///< max over plans of ⟨∇F, γ − ·⟩ (Frank and Wolfe's)
   std::vector<double> row, column;  ///< potentials of ∇F: of the last linear program
   long iterations = 0, pivots = 0;
+  std::size_t memory_bytes = 0;  ///< of the method, but for the simplex
 };
 
 /// What F could be of a bad plan.
@@ -35,9 +36,11 @@ double scale_of(const Problem& problem);
 double value_of(const Problem& problem, const Matrix& plan);
 
 /// Conditional gradient with an exact line search (T. Vayer et al., ICML 2019): the best vertex for ∇F by network
-/// simplex, which goes on from the one before; then the best of the segment towards it, a parabola. Where A and B are
-/// Euclidean distances, plain or squared, F is concave along all of these, so that plans are vertices and the method
-/// ends by itself. `simplex` has the masses of a and b. Throws a StatusError (`failed`) after too many steps.
+/// simplex, which goes on from the one before. Where F, a parabola along that way, is concave, the plan becomes that
+/// vertex; where A and B are Euclidean distances, plain or squared, it always is, and the method ends by itself.
+/// Elsewhere the vertex takes mass from the one of those that the plan is mixed of that costs most (pairwise steps,
+/// S. Lacoste-Julien, M. Jaggi, NIPS 2015): plain steps close the gap like 1/k. `simplex` has the masses of a and b.
+/// Throws a StatusError (`failed`) after too many steps.
 Stationary descend(const Problem& problem, const Matrix& start, const Settings& settings,
                    simplex::NetworkSimplex& simplex);
 

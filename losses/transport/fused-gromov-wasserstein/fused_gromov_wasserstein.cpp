@@ -78,11 +78,13 @@ class FusedGromovWasserstein final : public Transport {
     Stationary best;
     std::vector<double> values;
     long iterations = 0, pivots = 0;
+    std::size_t memory_bytes = 0;
     std::mt19937 random(seed_);
     for (long k = 0; k < starts_; ++k) {
       Stationary found = descend(own, start(own, k, random, simplex), settings_, simplex);
       iterations += found.iterations;
       pivots += found.pivots;
+      memory_bytes = std::max(memory_bytes, found.memory_bytes);
       values.push_back(found.value);
       if (k == 0 || found.value < best.value) best = std::move(found);
     }
@@ -95,9 +97,7 @@ class FusedGromovWasserstein final : public Transport {
                         {"starts_with_this_value",
                          static_cast<double>(std::count_if(values.begin(), values.end(),
                                                            [near](double value) { return value <= near; }))}});
-    out.memory_bytes = simplex.memory_bytes() + static_cast<std::size_t>(7 * best.plan.size() + own.structure_a.size() +
-                                                                         own.structure_b.size()) *
-                                                    sizeof(double);
+    out.memory_bytes = simplex.memory_bytes() + memory_bytes;
   }
 
   Problem read(const TransportProblem& problem) const {
