@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 #include <random>
 #include <string>
 #include <utility>
@@ -49,6 +49,15 @@ void append(SparseEntries& out, const Matrix& plan, double factor) {
   }
 }
 
+/// Of costs that the method itself may not have looked at.
+double cost_of(PairCosts& between, const SparseEntries& plan) {
+  std::vector<int> pairs;
+  for (std::size_t k = 0; k < plan.value.size(); ++k) pairs.insert(pairs.end(), {plan.row[k], plan.column[k]});
+  std::vector<double> cost(plan.value.size());
+  if (const Status status = between.evaluate(pairs, cost); !status.ok()) throw StatusError(status);
+  return std::inner_product(cost.begin(), cost.end(), plan.value.begin(), 0.0);
+}
+
 /// A stationary plan of transport that compares distances within the measures too. Each call starts cold; within it
 /// the linear programs go on from each other.
 class FusedGromovWasserstein final : public Transport {
@@ -89,7 +98,7 @@ class FusedGromovWasserstein final : public Transport {
       if (k == 0 || found.value < best.value) best = std::move(found);
     }
     out = {};
-    write(own, best, out);
+    write(own, best, *problem.between, out);
     out.iterations = iterations;
     const double near = best.value + 1e-9 * scale_of(own);
     out.figures.insert(out.figures.end(),
@@ -124,12 +133,11 @@ class FusedGromovWasserstein final : public Transport {
     return vertex_of(simplex);
   }
 
-  void write(const Problem& problem, const Stationary& found, TransportAnswer& out) const {
+  void write(const Problem& problem, const Stationary& found, PairCosts& between, TransportAnswer& out) const {
     out.value = found.value;
     append(out.plan, found.plan, 1.0);
     append(out.by_cost, found.plan, 1.0 - alpha_);
-    const double linear = alpha_ < 1.0 ? problem.cost.cwiseProduct(found.plan).sum() : 0.0;
-    out.transport_cost = linear;
+    out.transport_cost = cost_of(between, out.plan);
     write_duals(problem, found, out);
     long coincident = 0;
     if (alpha_ > 0.0) {
@@ -143,9 +151,10 @@ class FusedGromovWasserstein final : public Transport {
                          form_, coincident);
     }
     out.gap = found.gap;
-    out.figures = {{"structure_cost", alpha_ > 0.0 ? (found.value - (1.0 - alpha_) * linear) / alpha_ : 0.0},
-                   {"frank_wolfe_gap", found.gap},
-                   {"coincident_pairs", static_cast<double>(coincident)}};
+    out.figures = {
+        {"structure_cost", alpha_ > 0.0 ? (found.value - (1.0 - alpha_) * out.transport_cost) / alpha_ : 0.0},
+        {"frank_wolfe_gap", found.gap},
+        {"coincident_pairs", static_cast<double>(coincident)}};
   }
 
   /// Potentials of ∇F at the plan are the derivatives by weights: what the value depends on beside the plan is none.

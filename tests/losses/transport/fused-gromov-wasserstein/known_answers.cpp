@@ -53,6 +53,7 @@ TEST_CASE("two spaces of two points: (d1 - d2)^2 / 2") {
       const Measure b{{9.0, 9.0, 9.0, 9.0, 9.0, 9.0 + second}, {}, {0.5, 0.5}};
       TransportComparison by_distance = fused(1.0), by_square = fused(1.0, {{"structure", "squared-distance"}});
       const double apart = first - second, squares = first * first - second * second;
+      CHECK(compare(by_distance, a, b).answer.transport_cost > 1.0);
       CHECK(compare(by_distance, a, b).answer.value == doctest::Approx(0.5 * apart * apart).epsilon(1e-12));
       CHECK(compare(by_square, a, b).answer.value == doctest::Approx(0.5 * squares * squares).epsilon(1e-12));
     }
