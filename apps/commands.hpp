@@ -52,12 +52,25 @@ struct RerunOptions {
   bool json = false;
 };
 
+struct TransportOptions {
+  std::string a, b;
+  std::string method = "exact", cost = "euclidean";
+  std::vector<std::string> set;  ///< "key=value"
+  int points = 0;                ///< 0: the nodes of curves
+  std::string weights;           ///< "": what files have, or else uniform
+  int repeat = 0;
+  std::optional<std::string> out;
+  std::vector<std::string> write;  ///< "writer=file"
+  bool json = false;
+};
+
 int solve(const CommonOptions& common, const SolveOptions& options);
 int explain(const CommonOptions& common, const std::string& file, const std::vector<std::string>& set);
 int check(const CommonOptions& common, const CheckCommandOptions& options);
 int study(const CommonOptions& common, const StudyOptions& options);
 int compare(const CommonOptions& common, const CompareOptions& options);
 int rerun(const CommonOptions& common, const RerunOptions& options);
+int transport(const CommonOptions& common, const TransportOptions& options);
 /// `kind` "" for all.
 int list_plugins(const CommonOptions& common, const std::string& kind, bool json);
 /// `what`: "kind/name".

@@ -59,6 +59,7 @@ Json results(const ResultDifferences& found) {
           {"second_order", word(found.second_order)},
           {"quantities", numbers(found.quantities)},
           {"energy", numbers(found.energies)},
+          {"losses", numbers(found.losses)},
           {"certificate", numbers(found.certificate)},
           {"curves", curves(found.curves)},
           {"forces_N", numbers(found.forces)},

@@ -123,6 +123,7 @@ void print_results(const ResultDifferences& found) {
   if (found.bits.same()) std::printf("the same bits: %ld numbers\n", found.bits.numbers);
   print_numbers("quantities", found.quantities);
   print_numbers("energy, N mm", found.energies);
+  print_numbers("losses", found.losses);
   print_numbers("certificate", found.certificate);
   print_curves(found.curves);
   print_numbers("forces, N", found.forces);

@@ -56,6 +56,22 @@ void explain_curve(const Curve& curve) {
   }
 }
 
+void explain_losses(const Composition& composition) {
+  if (composition.losses.empty()) return;
+  std::printf("losses, evaluated on the solution\n");
+  for (const LossTable& loss : composition.losses) {
+    const std::string places =
+        loss.sampling.points > 0 ? counted(loss.sampling.points, "place") + ", resampled" : "its nodes";
+    std::printf("  %-24s %s with %s between '%s' (%s, weights %s%s) and '%s'\n", loss.label.c_str(),
+                loss.transport.name.c_str(), loss.ground_cost.name.c_str(), loss.on.c_str(), places.c_str(),
+                curve_weights_name(loss.sampling.weights),
+                loss.sampling.stations.empty()
+                    ? ""
+                    : (", " + counted(static_cast<int>(loss.sampling.stations.size()), "station")).c_str(),
+                loss.against.c_str());
+  }
+}
+
 void explain_plugins(const Session& session, const Registry& registry) {
   std::set<std::string> lines;
   for (const ComponentChoice* choice : components_of(session.composition)) {
@@ -113,6 +129,7 @@ int explain(const CommonOptions& common, const std::string& file, const std::vec
   std::printf("Hessian: %d entries in its lower triangle; Jacobian: %d\n",
               session->assembly->hessian_pattern().entries(), session->assembly->jacobian_pattern().entries());
   std::printf("solved by %s with rows by %s\n", composition.solver.name.c_str(), composition.enforcement.name.c_str());
+  explain_losses(composition);
   explain_procedure(composition);
   explain_plugins(*session, host);
   for (const std::string& idle : composition.without_effect) std::printf("without effect: %s\n", idle.c_str());

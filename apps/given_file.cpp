@@ -8,14 +8,21 @@
 
 namespace bowstring::apps {
 
-bool read_given_file(const std::string& file, std::string& text) {
+bool read_given_file(const std::string& file, std::string& text, Refusal& refusal) {
   std::string why = read_file(file, text);
   if (why.empty() && study::is_gzip(text)) {
     const std::string bytes = std::move(text);
     why = study::gunzip(bytes, text);
   }
   if (why.empty()) return true;
-  report({{{file, "cannot be read (" + why + ")", "a file, plain or in gzip", "check the path"}}, {}});
+  refusal.errors.push_back({file, "cannot be read (" + why + ")", "a file, plain or in gzip", "check the path"});
+  return false;
+}
+
+bool read_given_file(const std::string& file, std::string& text) {
+  Refusal refusal;
+  if (read_given_file(file, text, refusal)) return true;
+  report(refusal);
   return false;
 }
 

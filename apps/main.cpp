@@ -82,6 +82,31 @@ int main(int argc, char** argv) {
   rerun_command->add_flag("--json", rerun_options.json, "print the new result document, and nothing else, on stdout");
   plugin_path(rerun_command);
 
+  TransportOptions transport_options;
+  CLI::App* transport_command = app.add_subcommand("transport", "optimal transport between two measures");
+  transport_command
+      ->add_option("A", transport_options.a,
+                   "POINTS.csv, POINTS.csv#curve where its rows are a curve in order, or RESULT.json#CURVE")
+      ->required();
+  transport_command->add_option("B", transport_options.b, "the same")->required();
+  transport_command->add_option("--method", transport_options.method, "transport plugin")->capture_default_str();
+  transport_command->add_option("--cost", transport_options.cost, "ground-cost plugin")->capture_default_str();
+  transport_command->add_option("--set", transport_options.set, "key=value of the method or the cost; repeatable")
+      ->allow_extra_args(false);
+  transport_command->add_option("--points", transport_options.points, "places at which curves are resampled")
+      ->check(CLI::Range(1, 1000000));
+  transport_command->add_option("--weights", transport_options.weights, "weights of the places of curves")
+      ->check(CLI::IsMember({"uniform", "arc-length", "lumen-section"}));
+  transport_command
+      ->add_option("--repeat", transport_options.repeat, "so many comparisons more, after small steps of A's places")
+      ->check(CLI::Range(1, 1000000));
+  transport_command->add_option("--out", transport_options.out, "write the document (JSON) to this file");
+  transport_command
+      ->add_option("--write", transport_options.write, "writer=file: also write it in this format; repeatable")
+      ->allow_extra_args(false);
+  transport_command->add_flag("--json", transport_options.json, "print the document, and nothing else, on stdout");
+  plugin_path(transport_command);
+
   std::string kind;
   bool plugins_json = false;
   CLI::App* plugins_command = app.add_subcommand("plugins", "list what is installed");
@@ -107,6 +132,7 @@ int main(int argc, char** argv) {
   if (study_command->parsed()) return study(common, study_options);
   if (compare_command->parsed()) return compare(common, compare_options);
   if (rerun_command->parsed()) return rerun(common, rerun_options);
+  if (transport_command->parsed()) return transport(common, transport_options);
   if (plugins_command->parsed()) return list_plugins(common, kind, plugins_json);
   return describe(common, what, describe_json);
 }

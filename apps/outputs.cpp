@@ -61,12 +61,12 @@ int Outputs::check_places() const {
   return code;
 }
 
-int Outputs::spare(const std::vector<std::string>& input_files) const {
+int Outputs::spare(const std::vector<std::string>& input_files, const char* reader) const {
   int code = exit_converged;
   for (const Target& target : targets_) {
     for (const std::string& input : input_files) {
       if (!same_file(target.file, input)) continue;
-      complain(target.label + ": '" + target.file + "' is what this composition reads; expected another file");
+      complain(target.label + ": '" + target.file + "' is what " + reader + " reads; expected another file");
       code = exit_wrong_input;
       break;
     }
@@ -93,7 +93,8 @@ int Outputs::write(const std::string& document) const {
     if (std::error_code ignored; status.ok() && !fs::exists(temporary, ignored)) {
       status = Status::failure(Code::failed, "writer '" + target.writer.name + "' wrote no file");
     }
-    if (!status.ok()) fail(target, status, exit_plugin_failed);
+    const bool by_choice = status.code == Code::unsupported;  // another writer would do
+    if (!status.ok()) fail(target, status, by_choice ? exit_wrong_input : exit_plugin_failed);
   }
   for (const Target& target : targets_) {
     const std::string temporary = temporary_name(target.file);

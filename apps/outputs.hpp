@@ -15,8 +15,8 @@ class Outputs {
   /// twice, is reported on stderr. Returns an exit code.
   int prepare(const std::optional<std::string>& out, const std::vector<std::string>& write, Registry& registry);
 
-  /// The same for places where an input stands. Returns an exit code.
-  int spare(const std::vector<std::string>& input_files) const;
+  /// The same for places where an input stands. `reader` is who reads it: "this composition". Returns an exit code.
+  int spare(const std::vector<std::string>& input_files, const char* reader = "this composition") const;
 
   /// Writes everything beside its place, then renames. Returns an exit code: that of a place which cannot be written
   /// any more, or of a writer that fails, both reported on stderr.

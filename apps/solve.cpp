@@ -76,6 +76,10 @@ void print_table(const StateResult& result) {
     line("contact force, sum", q.contact_force, "N");
     line("line load, peak", q.line_load_peak, "N/mm");
   }
+  if (!result.losses.empty()) std::printf("losses\n");
+  for (const LossRecord& loss : result.losses) {
+    if (loss.status.ok()) line(loss.name.c_str(), loss.result.answer.value, loss.result.cost_unit.c_str());
+  }
   std::printf("certificate\n");
   line("stationarity", certificate.stationarity, "N");
   line("row penetration", certificate.penetration, "mm");

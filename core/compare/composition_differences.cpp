@@ -56,7 +56,7 @@ class Differ {
   std::vector<CompositionDifference> run(const Json& a, const Json& b) {
     for_each_key(a, b, [&](const std::string& key, const Json* in_a, const Json* in_b) {
       const bool tables = in_a != nullptr && in_b != nullptr && in_a->is_object() && in_b->is_object();
-      if (key == "vessel" || key == "wire" || key == "energy" || key == "constraint") {
+      if (key == "vessel" || key == "wire" || key == "energy" || key == "constraint" || key == "loss") {
         static const Json none = Json::array();
         compare_entries(key, in_a != nullptr ? *in_a : none, in_b != nullptr ? *in_b : none);
       } else if (tables) {
@@ -169,6 +169,10 @@ class Differ {
         compare_tables(inner, *in_a, *in_b, of_component(Kind::geometry));
       } else if (key == "kinematics" && both) {
         compare_tables(inner, *in_a, *in_b, of_component(Kind::kinematics));
+      } else if (key == "transport" && both && in_a->is_object() && in_b->is_object()) {
+        compare_tables(inner, *in_a, *in_b, of_component(Kind::transport));
+      } else if (key == "ground-cost" && both && in_a->is_object() && in_b->is_object()) {
+        compare_tables(inner, *in_a, *in_b, of_component(Kind::ground_cost));
       } else if (key == "ends" && both && in_a->is_array() && in_b->is_array() && in_a->size() == 2 &&
                  in_b->size() == 2) {
         compare_ends(inner + ".first", in_a->front(), in_b->front());

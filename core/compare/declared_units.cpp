@@ -3,6 +3,7 @@
 #include <iterator>
 
 #include "core/composition/json_words.hpp"
+#include "core/composition/losses.hpp"
 #include "core/composition/numbers.hpp"
 #include "core/composition/resolved_toml.hpp"
 #include "core/composition/sequences.hpp"
@@ -103,6 +104,7 @@ const ParameterDeclaration* DeclaredUnits::of_table(const std::string& table, co
     return find({curve_quantities, std::size(curve_quantities)}, key);
   }
   if (table == "certificate") return find(certificate_schema(), key);
+  if (table == "loss") return find(loss_schema(), key);
   return table == "multistart" ? find(multistart_schema(), key) : nullptr;
 }
 

@@ -137,6 +137,19 @@ std::vector<CurveDifference> curve_differences(const std::string& a, const std::
   return out;
 }
 
+/// The value of each entry of `losses`, by its name.
+Json loss_values(const Json& document) {
+  Json out = Json::object();
+  const Json* losses = find_key(document, "losses");
+  if (losses == nullptr || !losses->is_array()) return out;
+  for (const Json& entry : *losses) {
+    if (!entry.is_object()) continue;
+    const Json* value = find_key(entry, "value");
+    out[text_of(entry, "name")] = value != nullptr ? *value : Json();
+  }
+  return out;
+}
+
 WordDifference words(const std::string& name, const Json& a, const Json& b) {
   return {name, text_of(a, name.c_str()), text_of(b, name.c_str())};
 }
@@ -173,6 +186,7 @@ ResultDifferences result_differences(const RecordedResult& a, const RecordedResu
   out.quantities = numbers_of(one["quantities"], other["quantities"]);
   out.energies = numbers_of(one["energy"], other["energy"]);
   out.certificate = numbers_of(one["certificate"], other["certificate"]);
+  out.losses = numbers_of(loss_values(one), loss_values(other));
   out.curves = curve_differences(a.text, b.text);
   Forces forces;
   forces.take(one, &NumberDifference::a);

@@ -29,6 +29,7 @@ struct CurveDifference {
 struct ResultDifferences {
   WordDifference status, reason, second_order;
   std::vector<NumberDifference> quantities, energies, certificate;
+  std::vector<NumberDifference> losses;  ///< values, by name
   std::vector<CurveDifference> curves;
   std::vector<NumberDifference> forces;   ///< N: sums and largest of contacts, magnitudes of supports
   std::vector<NumberDifference> effort;   ///< unknowns, iterations, factorizations, evaluations, epochs

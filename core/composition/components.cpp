@@ -96,4 +96,30 @@ ComponentChoice read_component(const Node& table, const ComponentUse& use, Readi
   return choice;
 }
 
+ComponentChoice read_component_of(const Node& table, const char* key, Kind kind, const char* default_type,
+                                  const std::string& owner, Reading& reading) {
+  ComponentUse use;
+  use.kind = kind;
+  use.owner = owner;
+  use.default_type = default_type;
+  use.structural = {"type"};
+
+  Node chosen;
+  chosen.position = table.position;
+  if (const Entry* entry = table.find(key)) {
+    if (entry->value.is_table()) return read_component(entry->value, use, reading);
+    if (!entry->value.is_text()) {
+      const std::string name = kind_name(kind);
+      reading.report.error(entry->value.position,
+                           "'" + std::string(key) + "' of " + owner + " is " + description(entry->value),
+                           "the name of " + with_article(kind) + ", or a table with its 'type'",
+                           "write " + std::string(key) + " = \"" + default_type + "\"");
+      return {};
+    }
+    chosen.position = entry->value.position;
+    chosen.set({"type", entry->position, entry->value});
+  }
+  return read_component(chosen, use, reading);
+}
+
 }  // namespace bowstring

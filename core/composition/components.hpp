@@ -33,4 +33,9 @@ struct ComponentUse {
 /// descriptor is null where the type is unknown or its plugin cannot be loaded.
 ComponentChoice read_component(const Node& table, const ComponentUse& use, Reading& reading);
 
+/// The plugin that stands under a key of a table: a name alone, a table with `type` and the plugin's parameters, or,
+/// where the key or the `type` is left out, `default_type`. `owner` is the table's: "vessel 'iliac'".
+ComponentChoice read_component_of(const Node& table, const char* key, Kind kind, const char* default_type,
+                                  const std::string& owner, Reading& reading);
+
 }  // namespace bowstring

@@ -7,6 +7,7 @@
 #include "core/composition/curves.hpp"
 #include "core/composition/duplicates.hpp"
 #include "core/composition/keys.hpp"
+#include "core/composition/losses.hpp"
 #include "core/composition/report.hpp"
 #include "core/composition/resolved.hpp"
 #include "core/composition/sequences.hpp"
@@ -16,6 +17,7 @@
 #include "core/composition/terms.hpp"
 #include "core/composition/vocabulary.hpp"
 #include "core/composition/without_effect.hpp"
+#include "core/measure/given_measure.hpp"
 
 namespace bowstring {
 namespace {
@@ -53,6 +55,9 @@ Composition read_composition(const Node& root, bool from_memory, Reading& readin
   }
   for (const Node& table : tables_of(root, "constraint", report)) {
     composition.constraints.push_back(read_constraint(table, names, reading));
+  }
+  for (const Node& table : tables_of(root, "loss", report)) {
+    composition.losses.push_back(read_loss(table, names, reading));
   }
   composition.enforcement = read_enforcement(root, reading);
   composition.solver = read_solver(root, reading);
@@ -100,6 +105,10 @@ std::vector<const ComponentChoice*> components_of(const Composition& composition
   }
   for (const EnergyTable& energy : composition.energies) out.push_back(&energy.component);
   for (const ConstraintTable& constraint : composition.constraints) out.push_back(&constraint.component);
+  for (const LossTable& loss : composition.losses) {
+    out.push_back(&loss.transport);
+    out.push_back(&loss.ground_cost);
+  }
   out.push_back(&composition.enforcement);
   out.push_back(&composition.solver);
   return out;
@@ -108,6 +117,9 @@ std::vector<const ComponentChoice*> components_of(const Composition& composition
 std::vector<std::string> data_files_of(const Composition& composition) {
   std::vector<std::string> out;
   for (const ComponentChoice* choice : components_of(composition)) add_paths(choice->parameters, out);
+  for (const LossTable& loss : composition.losses) {
+    if (loss.observed != nullptr) out.push_back(loss.observed->name.file);
+  }
   if (!composition.start.from.empty()) out.push_back(composition.start.from);
   return out;
 }

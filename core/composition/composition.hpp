@@ -10,8 +10,11 @@
 #include "core/composition/value_range.hpp"
 #include "core/interfaces/curve.hpp"
 #include "core/interfaces/registry.hpp"
+#include "core/measure/curve_sampling.hpp"
 
 namespace bowstring {
+
+struct GivenMeasure;
 
 /// One thing that is wrong with the user's input, as a person reads it.
 struct InputError {
@@ -92,6 +95,17 @@ struct ConstraintTable {
   ComponentChoice component;
 };
 
+/// A curve of the solution, as a measure, against another measure. It changes nothing of the solution.
+struct LossTable {
+  std::string label;
+  std::string on;       ///< a curve
+  std::string against;  ///< "/…/observed.csv", "/…/result.json#iliac"; absolute
+  std::string position, against_position;
+  CurveSampling sampling;  ///< of `on`, and of what it is compared with where that is a curve
+  std::shared_ptr<const GivenMeasure> observed;
+  ComponentChoice transport, ground_cost;
+};
+
 /// Thresholds of `converged`.
 struct CertificateTable {
   double stationarity = 1e-6;     ///< N
@@ -159,6 +173,7 @@ struct Composition {
   std::vector<WireTable> wires;
   std::vector<EnergyTable> energies;
   std::vector<ConstraintTable> constraints;
+  std::vector<LossTable> losses;
   ComponentChoice enforcement, solver;
   CertificateTable certificate;
   StartTable start;

@@ -56,30 +56,6 @@ SchemaOwner owner_of(const std::string& name) {
   return owner;
 }
 
-/// A name alone, or a table with `type` and the kinematics' parameters.
-ComponentChoice read_kinematics(const Node& table, const std::string& owner, Reading& reading) {
-  ComponentUse use;
-  use.kind = Kind::kinematics;
-  use.owner = owner;
-  use.default_type = default_kinematics;
-  use.structural = {"type"};
-
-  Node chosen;
-  chosen.position = table.position;
-  if (const Entry* entry = table.find("kinematics")) {
-    if (entry->value.is_table()) return read_component(entry->value, use, reading);
-    if (!entry->value.is_text()) {
-      reading.report.error(entry->value.position, "'kinematics' of " + owner + " is " + description(entry->value),
-                           "the name of a kinematics, or a table with its 'type'",
-                           std::string("write kinematics = \"") + default_kinematics + "\"");
-      return {};
-    }
-    chosen.position = entry->value.position;
-    chosen.set({"type", entry->position, entry->value});
-  }
-  return read_component(chosen, use, reading);
-}
-
 ComponentChoice read_geometry(const Node& table, const std::string& owner, Reading& reading) {
   ComponentUse use;
   use.kind = Kind::geometry;
@@ -249,7 +225,7 @@ VesselTable read_vessel(const Node& table, Reading& reading) {
   check_radius_origin(vessel.radius, table, name, reading.report);
 
   vessel.geometry = read_geometry(table, name, reading);
-  vessel.kinematics = read_kinematics(table, name, reading);
+  vessel.kinematics = read_component_of(table, "kinematics", Kind::kinematics, default_kinematics, name, reading);
   read_ends(table, name, vessel.end, reading);
   return vessel;
 }
@@ -289,7 +265,7 @@ WireTable read_wire(const Node& table, const CurveNames& names, Reading& reading
   }
   read_span(table, name, wire, reading);
   read_spacing(table, name, wire, reading);
-  wire.kinematics = read_kinematics(table, name, reading);
+  wire.kinematics = read_component_of(table, "kinematics", Kind::kinematics, default_kinematics, name, reading);
   read_ends(table, name, wire.end, reading);
   return wire;
 }

@@ -16,7 +16,7 @@ struct Named {
 
 /// What a table is called by: its name, or else the type of a term. A vessel has no other name.
 bool has_label(const Node& entry, const std::string& table) {
-  return entry.find("name") != nullptr || entry.find("type") != nullptr || table == "wire";
+  return entry.find("name") != nullptr || entry.find("type") != nullptr || table == "wire" || table == "loss";
 }
 
 void check_names_of(const Node& root, const std::vector<std::string>& tables, Report& report) {
@@ -44,6 +44,7 @@ void check_duplicates(const Node& root, Report& report) {
   check_names_of(root, {"vessel", "wire"}, report);
   check_names_of(root, {"energy"}, report);
   check_names_of(root, {"constraint"}, report);
+  check_names_of(root, {"loss"}, report);
 }
 
 }  // namespace bowstring

@@ -25,7 +25,8 @@ std::string text_of(const Json& table, const char* key) {
 std::string problem_of(const Json::exception& error) {
   std::string why = error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: …"
   if (const std::size_t bracket = why.find("] "); bracket != std::string::npos) why.erase(0, bracket + 2);
-  return why;
+  // The library quotes what it read last, which may be half a letter.
+  return Json::parse(Json(why).dump(-1, ' ', true, Json::error_handler_t::replace)).get<std::string>();
 }
 
 }  // namespace bowstring

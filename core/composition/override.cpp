@@ -107,7 +107,11 @@ class Walk {
     return false;
   }
 
-  bool names_a_type() const { return steps_[next_ - 1] == "kinematics" || (next_ >= 2 && steps_[next_ - 2] == "ends"); }
+  bool names_a_type() const {
+    const std::string& key = steps_[next_ - 1];
+    if (steps_.front() == "loss") return key == "transport" || key == "ground-cost";
+    return key == "kinematics" || (next_ >= 2 && steps_[next_ - 2] == "ends");
+  }
 
   bool among_ends() const { return next_ > 0 && steps_[next_ - 1] == "ends"; }
 

@@ -110,7 +110,7 @@ void add_component(Json& table, const ComponentChoice& choice) {
   add_parameters(table, choice.parameters, {choice.descriptor->parameters, count});
 }
 
-Json component_json(const ComponentChoice& choice) {
+Json component_table(const ComponentChoice& choice) {
   Json table;
   add_component(table, choice);
   return table;
@@ -144,9 +144,9 @@ Json radius_json(const ParameterValue& radius) {
 Json vessel_json(const VesselTable& vessel, int dimension) {
   Json table;
   table["name"] = vessel.name;
-  table["geometry"] = component_json(vessel.geometry);
+  table["geometry"] = component_table(vessel.geometry);
   if (vessel.radius) table["radius"] = radius_json(*vessel.radius);
-  table["kinematics"] = component_json(vessel.kinematics);
+  table["kinematics"] = component_table(vessel.kinematics);
   table["ends"] = Json::array({end_json(vessel.end[0], dimension), end_json(vessel.end[1], dimension)});
   table["rigid"] = vessel.rigid;
   return table;
@@ -156,13 +156,13 @@ Json wire_json(const WireTable& wire, int dimension) {
   Json table;
   table["name"] = wire.name;
   if (!wire.vessel.empty()) table["vessel"] = wire.vessel;
-  if (wire.geometry) table["geometry"] = component_json(*wire.geometry);
+  if (wire.geometry) table["geometry"] = component_table(*wire.geometry);
   if (wire.nodes > 0) table["nodes"] = wire.nodes;
   if (!wire.span.empty()) table["span"] = wire.span;
   if (!wire.spacing.empty()) table["spacing"] = wire.spacing;
   if (wire.length != LengthRule::by_ends) table["length"] = wire.length == LengthRule::sliding ? "sliding" : "fixed";
   table["radius"] = radius_json(wire.radius);
-  table["kinematics"] = component_json(wire.kinematics);
+  table["kinematics"] = component_table(wire.kinematics);
   table["ends"] = Json::array({end_json(wire.end[0], dimension), end_json(wire.end[1], dimension)});
   return table;
 }
@@ -173,6 +173,18 @@ Json term_json(const Term& term) {
   table["name"] = term.label;
   table["on"] = term.on;
   add_component(table, term.component);
+  return table;
+}
+
+Json loss_json(const LossTable& loss) {
+  Json table = {{"name", loss.label}, {"on", loss.on}, {"against", loss.against}};
+  if (loss.sampling.points > 0) table["points"] = loss.sampling.points;
+  table["weights"] = curve_weights_name(loss.sampling.weights);
+  for (const Station& station : loss.sampling.stations) {
+    table["stations"].push_back({{"at", station.at}, {"spread", station.spread}, {"weight", station.weight}});
+  }
+  table["transport"] = component_table(loss.transport);
+  table["ground-cost"] = component_table(loss.ground_cost);
   return table;
 }
 
@@ -240,6 +252,8 @@ std::string differing_tables(const std::string& resolved, const std::string& bef
   return out.empty() ? "" : written(out);
 }
 
+std::string component_json(const ComponentChoice& choice) { return written(component_table(choice)); }
+
 std::string resolved_json(const Composition& composition) {
   Json root;
   root["schema"] = composition.schema;
@@ -253,8 +267,9 @@ std::string resolved_json(const Composition& composition) {
   for (const ConstraintTable& constraint : composition.constraints) {
     root["constraint"].push_back(term_json(constraint));
   }
-  root["enforcement"] = component_json(composition.enforcement);
-  root["solver"] = component_json(composition.solver);
+  for (const LossTable& loss : composition.losses) root["loss"].push_back(loss_json(loss));
+  root["enforcement"] = component_table(composition.enforcement);
+  root["solver"] = component_table(composition.solver);
   root["certificate"] = certificate_json(composition.certificate);
   const StartTable& start = composition.start;
   if (!start.from.empty()) root["start"]["from"] = start.from;

@@ -17,6 +17,9 @@ namespace bowstring {
 /// later step is that of its state alone.
 std::string resolved_json(const Composition& composition);
 
+/// One plugin with its parameters, as it stands there: JSON text, a table with `type`.
+std::string component_json(const ComponentChoice& choice);
+
 /// The tables of a resolved composition that differ from those of another, JSON text; "" where none does. What steps
 /// cannot set is left out.
 std::string differing_tables(const std::string& resolved, const std::string& before);

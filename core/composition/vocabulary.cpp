@@ -5,7 +5,7 @@
 namespace bowstring {
 
 const std::vector<std::string>& list_table_names() {
-  static const std::vector<std::string> names{"vessel", "wire", "energy", "constraint", "step"};
+  static const std::vector<std::string> names{"vessel", "wire", "energy", "constraint", "loss", "step"};
   return names;
 }
 
@@ -16,21 +16,22 @@ const std::vector<std::string>& single_table_names() {
 }
 
 const std::vector<std::string>& top_level_names() {
-  static const std::vector<std::string> names{
-      "schema",     "title",       "base",   "plugin-path", "set",   "scene",        "vessel",     "wire", "energy",
-      "constraint", "enforcement", "solver", "certificate", "start", "continuation", "multistart", "step"};
-  return names;
-}
-
-const std::vector<std::string>& overridable_names() {
-  static const std::vector<std::string> names{"title",        "scene",       "vessel", "wire",        "energy",
-                                              "constraint",   "enforcement", "solver", "certificate", "start",
+  static const std::vector<std::string> names{"schema",       "title",       "base",   "plugin-path", "set",
+                                              "scene",        "vessel",      "wire",   "energy",      "constraint",
+                                              "loss",         "enforcement", "solver", "certificate", "start",
                                               "continuation", "multistart",  "step"};
   return names;
 }
 
+const std::vector<std::string>& overridable_names() {
+  static const std::vector<std::string> names{"title",      "scene",        "vessel",      "wire",   "energy",
+                                              "constraint", "loss",         "enforcement", "solver", "certificate",
+                                              "start",      "continuation", "multistart",  "step"};
+  return names;
+}
+
 const std::vector<std::string>& later_table_names() {
-  static const std::vector<std::string> names{"loss", "residual", "readout", "axes"};
+  static const std::vector<std::string> names{"residual", "readout", "axes"};
   return names;
 }
 

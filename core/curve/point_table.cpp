@@ -1,9 +1,7 @@
 #include "core/curve/point_table.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -12,9 +10,16 @@
 #include <string_view>
 #include <utility>
 
+#include "core/curve/csv_cells.hpp"
+
 namespace bowstring {
 
 namespace {
+
+using csv::as_number;
+using csv::cells_of;
+using csv::joined;
+using csv::similar_column;
 
 constexpr std::size_t most_reported = 50;
 constexpr double smallest_step = 1e-9;  // mm; closer neighbours count as one point
@@ -27,33 +32,6 @@ struct Column {
   Role role = Role::number;
   std::size_t axis = 0;  ///< of a coordinate
 };
-
-std::string_view trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  text = text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-  return text;
-}
-
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells;
-  while (true) {
-    const auto comma = line.find(',');
-    cells.emplace_back(trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-/// The whole text as a number, "nan" and "inf" included, whatever the locale.
-std::optional<double> as_number(std::string_view text) {
-  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 std::string as_text(double value) {
   std::ostringstream text;
@@ -76,7 +54,7 @@ class Reader {
     for (line_ = 1; std::getline(stream, line); ++line_) {
       std::string_view text = line;
       if (line_ == 1 && text.substr(0, 3) == "\xef\xbb\xbf") text.remove_prefix(3);
-      if (trimmed(text).empty() || trimmed(text).front() == '#') continue;
+      if (csv::is_passed_over(text)) continue;
       if (!columns_.empty()) {
         read_row(cells_of(text));
       } else if (!read_header(cells_of(text))) {
@@ -116,24 +94,6 @@ class Reader {
 
   std::string expected_columns() const {
     return std::string(dimension_ == 2 ? "x_mm,y_mm" : "x_mm,y_mm,z_mm") + "[,radius_mm][,any point data]";
-  }
-
-  static std::string joined(const std::vector<std::string>& cells) {
-    std::string text;
-    for (const std::string& cell : cells) text += (text.empty() ? "" : ",") + cell;
-    if (text.size() <= 80) return text;
-    std::size_t end = 77;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) --end;  // no letter of UTF-8 is cut
-    return text.substr(0, end) + "...";
-  }
-
-  /// A column that was probably meant for that axis: "X", "x", "x (mm)".
-  static std::string similar_column(const std::vector<std::string>& cells, char axis) {
-    for (const std::string& cell : cells) {
-      const bool axis_first = !cell.empty() && std::tolower(static_cast<unsigned char>(cell.front())) == axis;
-      if (axis_first && (cell.size() == 1 || !std::isalpha(static_cast<unsigned char>(cell[1])))) return cell;
-    }
-    return {};
   }
 
   bool read_header(const std::vector<std::string>& cells) {

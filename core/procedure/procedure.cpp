@@ -45,6 +45,11 @@ StateResult unsolved(const StateResult& before, const std::string& name, const s
 
 }  // namespace
 
+void take_losses(const Composition& composition, const Scene& scene, StateResult& state) {
+  state.losses = evaluate_losses(composition, scene, state.readings);
+  for (std::string& warning : loss_warnings(state.losses)) state.solution.warnings.push_back(std::move(warning));
+}
+
 bool Procedure::check_walk(const Session& session, const CompositionRequest& request, Refusal& refusal) const {
   const ContinuationTable& table = session.composition.continuation;
   if (!table.given) return true;
@@ -146,6 +151,7 @@ StateResult Procedure::solve_state(const CompositionRequest& request, std::uniqu
   }
   out.input_files = solved.session->composition.input_files;
   out.solution = std::move(solved.solution);
+  take_losses(solved.session->composition, *solved.session->scene, out);
   out.solution.start = std::move(start);  // of what was asked, not of a solve that was one of many
   return out;
 }

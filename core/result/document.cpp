@@ -6,6 +6,7 @@
 
 #include "core/model/carried_curve.hpp"
 #include "core/model/manifold.hpp"
+#include "core/transport/transport_json.hpp"
 
 namespace bowstring {
 
@@ -326,6 +327,34 @@ Json equilibria(const StateResult& result) {
   return out;
 }
 
+Json loss(const LossRecord& record) {
+  const Measure& measure = record.predicted.measure;
+  Json out = {{"name", record.name}, {"on", record.on}, {"against", record.against}};
+  if (!record.status.ok()) {
+    out["value"] = nullptr;
+    out["reason"] = record.status.text;
+    return out;
+  }
+  double mass = 0.0;
+  for (const double weight : measure.weight) mass += weight;
+  out.update(transport_answer_json(record.result, mass));
+  out["gradient"] = {{"positions", rows_or_null(record.result.gradient_a.position, 3)},
+                     {"frames", rows_or_null(record.result.gradient_a.frame, 6)},
+                     {"weights", numbers_or_null(record.result.answer.weight_gradient_a)}};
+  out["places"] = {{"s_mm", numbers_or_null(record.predicted.arc)},
+                   {"positions", rows_or_null(measure.position, 3)},
+                   {"orientations", rows_or_null(measure.orientation, 4)},
+                   {"weights", numbers_or_null(measure.weight)}};
+  out["seconds"] = {{"cost", record.result.cost_seconds}, {"solve", record.result.solve_seconds}};
+  return out;
+}
+
+Json losses(const std::vector<LossRecord>& records) {
+  Json out = Json::array();
+  for (const LossRecord& record : records) out.push_back(loss(record));
+  return out;
+}
+
 /// All that the document says of one state, and not of where its plugins came from.
 void add_state(Json& out, const StateResult& result) {
   const Scene& scene = *result.session.scene;
@@ -341,6 +370,7 @@ void add_state(Json& out, const StateResult& result) {
   out["certificate"] = certificate(result.solution.certificate);
   out["energy"] = energies(scene, result.readings);
   out["quantities"] = quantities(result.readings.quantities);
+  out["losses"] = losses(result.losses);
   out["curves"] = curves(scene, result.readings);
   out["contacts"] = contacts(scene, result.readings);
   out["supports"] = supports(scene, result.readings);

@@ -20,7 +20,7 @@ const std::pair<std::string, std::string>& kernel() {
   static const std::pair<std::string, std::string> found = [] {
     std::pair<std::string, std::string> out;
     Dl_info self;
-    const auto* here = reinterpret_cast<const void*>(&provenance_of);
+    const auto* here = reinterpret_cast<const void*>(&provenance_here);
     if (::dladdr(here, &self) == 0 || self.dli_fname == nullptr) return out;
     std::error_code error;
     const std::filesystem::path file = std::filesystem::canonical(self.dli_fname, error);
@@ -91,9 +91,13 @@ Provenance provenance_here(const Provenance& recorded, const Registry& registry)
 }
 
 Provenance provenance_of(const Composition& composition, const Registry& registry) {
+  return provenance_of(components_of(composition), registry);
+}
+
+Provenance provenance_of(const std::vector<const ComponentChoice*>& chosen, const Registry& registry) {
   Provenance out = of_kernel();
   std::set<std::pair<Kind, std::string>> named;
-  for (const ComponentChoice* choice : components_of(composition)) named.emplace(choice->kind, choice->name);
+  for (const ComponentChoice* choice : chosen) named.emplace(choice->kind, choice->name);
   for (const auto& [kind, name] : named) out.plugins.push_back({kind, name, registry.origin(kind, name)});
   return out;
 }

@@ -27,7 +27,9 @@ struct Provenance {
   std::vector<PluginProvenance> plugins;  ///< each once, by kind and name
 };
 
-/// Of the running kernel and of the plugins that a composition names, from the registry.
+/// Of the running kernel and of the plugins that are chosen, from the registry.
+Provenance provenance_of(const std::vector<const ComponentChoice*>& chosen, const Registry& registry);
+/// The same of all plugins that a composition names.
 Provenance provenance_of(const Composition& composition, const Registry& registry);
 
 /// `provenance` of a result document as JSON text.

@@ -8,6 +8,7 @@
 #include "core/certificate/multipliers.hpp"
 #include "core/model/declarations.hpp"
 #include "core/session/revalue.hpp"
+#include "core/transport/curve_loss.hpp"
 
 namespace bowstring {
 
@@ -97,6 +98,8 @@ std::unique_ptr<Session> prepare(const CompositionRequest& request, Registry& re
   refusal.plugin_failure = std::move(built.plugin_failure);
   if (refusal.any()) return nullptr;
   session->scene = std::move(built.scene);
+  check_losses(composition, *session->scene, refusal);
+  if (refusal.any()) return nullptr;
   Start& start = session->start;
   if (carried != nullptr) {
     std::vector<DocumentFlaw> flaws;

@@ -125,6 +125,7 @@ SimulationResult solve_session(Session& session, std::string provenance, const P
   StateResult state;
   state.solution = solve(session, std::ref(guarded), start);
   state.readable = read_solution(session, state.solution, state.readings);
+  take_losses(session.composition, *session.scene, state);
   state.session = record_of(session, std::move(provenance));
   std::vector<StateResult> states;
   states.push_back(std::move(state));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "core/composition/tree.hpp"
 
@@ -70,7 +71,9 @@ std::string sum_mismatch(const std::vector<double>& weight_a, const std::vector<
   for (const double weight : weight_a) a += weight;
   for (const double weight : weight_b) b += weight;
   if (std::fabs(a - b) <= weight_sum_tolerance * std::max(a, b)) return "";
-  return "the weights of the first measure sum to " + decimal(a) + ", those of the second to " + decimal(b);
+  char text[120];
+  std::snprintf(text, sizeof text, "the weights of the first measure sum to %.12g, those of the second to %.12g", a, b);
+  return text;
 }
 
 std::vector<double> uniform_weights(std::size_t count) {

@@ -9,6 +9,7 @@
 #include "core/composition/nearest.hpp"
 #include "core/composition/report.hpp"
 #include "core/composition/toml_text.hpp"
+#include "core/transport/check_answer.hpp"
 #include "core/transport/check_measure.hpp"
 #include "core/transport/pair_costs.hpp"
 
@@ -103,6 +104,14 @@ Status check_sums(const std::vector<double>& weight_a, const std::vector<double>
                                                   "measure, or choose the method 'unbalanced'");
 }
 
+/// What the method says of itself, or what is wrong with its answer all the same.
+Status judged(const Status& status, const TransportAnswer& answer, const TransportChoice& choice, std::size_t count_a,
+              std::size_t count_b) {
+  if (!status.ok()) return status;
+  const std::string flaw = flaw_of(answer, count_a, count_b);
+  return flaw.empty() ? status : Status::failure(Code::failed, "transport '" + choice.method.name + "': " + flaw);
+}
+
 }  // namespace
 
 std::optional<TransportChoice> choose_transport(const TransportRequest& request, Registry& registry, Refusal& refusal) {
@@ -176,12 +185,13 @@ Status TransportComparison::compare(const Measure& a, const Measure& b, Transpor
   problem.a = &a;
   problem.b = &b;
   problem.ground_cost = choice_.cost.name.c_str();
-  const Status status = method_->solve(problem, out.answer);
+  const Status solved = method_->solve(problem, out.answer);
   const double seconds = since(start);
   const double in_cost = between.seconds() + within_a.seconds() + within_b.seconds();
   out.costs_evaluated = between.evaluated() + within_a.evaluated() + within_b.evaluated();
   out.cost_seconds = cost_->dear() ? 0.0 : in_cost;
   out.solve_seconds = seconds - out.cost_seconds;
+  const Status status = judged(solved, out.answer, choice_, a.count(), b.count());
   if (!status.ok() || !with_gradient) return status;
   return place_gradients(*cost_, a, b, out.answer, out.gradient_a, out.gradient_b);
 }
@@ -217,7 +227,7 @@ Status TransportComparison::compare(Span<const double> weight_a, Span<const doub
   const Clock::time_point start = Clock::now();
   const Status status = method_->solve(problem, out.answer);
   out.solve_seconds = since(start);
-  return status;
+  return judged(status, out.answer, choice_, a.size(), b.size());
 }
 
 }  // namespace bowstring

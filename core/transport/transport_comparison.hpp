@@ -70,13 +70,15 @@ class TransportComparison {
   Status compare(Span<const double> weight_a, Span<const double> weight_b, Span<const double> cost,
                  TransportResult& out);
 
+  /// What `compare` would refuse of these measures before it computes anything.
+  Status check(const Measure& a, const Measure& b) const;
+
   void forget() noexcept { method_->forget(); }
   const TransportChoice& choice() const noexcept { return choice_; }
   const GroundCost& ground_cost() const noexcept { return *cost_; }
 
  private:
   TransportComparison(TransportChoice choice, Owned<Transport> method, Owned<GroundCost> cost);
-  Status check(const Measure& a, const Measure& b) const;
 
   TransportChoice choice_;
   Owned<Transport> method_;

@@ -121,8 +121,8 @@ const char* reduction_name(Reduction reduction) noexcept {
 }
 
 std::string default_column(const QuantityOfInterest& quantity) {
-  const bool energy = quantity.path.rfind("energy.", 0) == 0;
-  const std::string name = energy ? quantity.path : last_step(quantity.path);
+  const bool named = quantity.path.rfind("energy.", 0) == 0 || quantity.path.rfind("losses.", 0) == 0;
+  const std::string name = named ? quantity.path : last_step(quantity.path);
   const std::string reduction = reduction_name(quantity.reduction);
   std::string out = column_name(without_unit(name)) + (reduction.empty() ? "" : "_" + reduction);
   if (!quantity.unit.empty()) out += "_" + unit_suffix(quantity.unit);

@@ -13,7 +13,7 @@ namespace bowstring::study {
 std::vector<QuantityOfInterest> read_quantities(const Entry* entry, Report& report);
 
 /// The column of a quantity that the study gives no name: "peak_displacement_mm", "energy_total_N_mm",
-/// "curvature_max_per_mm".
+/// "losses_shape_value", "curvature_max_per_mm".
 std::string default_column(const QuantityOfInterest& quantity);
 
 /// The unit of what a path of the result document leads to, "N mm"; "" without.

@@ -145,12 +145,12 @@ TEST_CASE("keys that a table must have") {
 
 TEST_CASE("what belongs to a later version is said to") {
   Workbench bench;
-  const std::string text = std::string(test::small_scene) + "[[loss]]\n";
+  const std::string text = std::string(test::small_scene) + "[[residual]]\n";
   const std::string tables =
       "expected one of: schema, title, base, plugin-path, set, scene, vessel, wire, energy, "
-      "constraint, enforcement, solver, certificate, start, continuation, multistart, step; remove it";
+      "constraint, loss, enforcement, solver, certificate, start, continuation, multistart, step; remove it";
   CHECK(bench.errors(text) ==
-        Texts{"scene.toml:28:3: key 'loss' in the composition is not available in this version; " + tables});
+        Texts{"scene.toml:28:3: key 'residual' in the composition is not available in this version; " + tables});
 }
 
 TEST_CASE("a start names a result document that can be read") {

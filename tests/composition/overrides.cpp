@@ -90,7 +90,7 @@ TEST_CASE("paths that lead nowhere") {
               "in 'energy'; expected one of: wire-bending, axial-tension, anchoring; did you mean 'axial-tension'?"});
   CHECK(errors_of(bench, "sovler.tolerance", "1") ==
         Texts{"--set sovler.tolerance=1: path 'sovler.tolerance': no table 'sovler'; expected one of: title, scene, "
-              "vessel, wire, energy, constraint, enforcement, solver, certificate, start, continuation, multistart, "
+              "vessel, wire, energy, constraint, loss, enforcement, solver, certificate, start, continuation, multistart, "
               "step; did you mean 'solver'?"});
   CHECK(errors_of(bench, "wire.w.radius.x.y", "1") ==
         Texts{"--set wire.w.radius.x.y=1: path 'wire.w.radius.x.y': 'wire.w.radius' is text \"0.4 mm\", not a table; "
@@ -100,11 +100,11 @@ TEST_CASE("paths that lead nowhere") {
               "two of them; write it as in 'wire.lunderquist.radius'"});
   CHECK(errors_of(bench, "schema", "2") ==
         Texts{"--set schema=2: path 'schema': 'schema' is read before any override; expected one of: title, scene, "
-              "vessel, wire, energy, constraint, enforcement, solver, certificate, start, continuation, multistart, "
+              "vessel, wire, energy, constraint, loss, enforcement, solver, certificate, start, continuation, multistart, "
               "step; write it in the file itself"});
-  CHECK(errors_of(bench, "loss.a.b", "2") ==
-        Texts{"--set loss.a.b=2: path 'loss.a.b': 'loss' is not available in this version; expected one of: title, "
-              "scene, vessel, wire, energy, constraint, enforcement, solver, certificate, start, continuation, "
+  CHECK(errors_of(bench, "residual.a.b", "2") ==
+        Texts{"--set residual.a.b=2: path 'residual.a.b': 'residual' is not available in this version; expected one of: title, "
+              "scene, vessel, wire, energy, constraint, loss, enforcement, solver, certificate, start, continuation, "
               "multistart, step; leave this override out"});
 }
 

@@ -15,10 +15,13 @@ SECONDS = 300
 FLAGS = ["-std=c++20", "-O1", "-g", "-fno-omit-frame-pointer", "-fsanitize=fuzzer,address,undefined",
          "-fno-sanitize-recover=undefined"]
 LIBRARIES = ["-ludunits2"]
+READING = ["core/composition/*.cpp", "core/measure/*.cpp", "core/curve/arc_length.cpp", "core/curve/csv_cells.cpp",
+           "core/transport/check_measure.cpp", "core/interfaces/interfaces.cpp", "tests/fuzz/scratch.cpp"]
 SOURCES = {
-    "composition": ["core/composition/*.cpp", "core/interfaces/interfaces.cpp", "tests/composition/fake_registry.cpp",
-                    "tests/fuzz/composition.cpp", "tests/fuzz/scratch.cpp"],
-    "point-table": ["core/curve/point_table.cpp", "tests/fuzz/point_table.cpp", "tests/fuzz/scratch.cpp"],
+    "composition": [*READING, "tests/composition/fake_registry.cpp", "tests/fuzz/composition.cpp"],
+    "measure": [*READING, "tests/fuzz/measure.cpp"],
+    "point-table": ["core/curve/point_table.cpp", "core/curve/csv_cells.cpp", "tests/fuzz/point_table.cpp",
+                    "tests/fuzz/scratch.cpp"],
 }
 
 

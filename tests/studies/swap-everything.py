@@ -5,7 +5,7 @@ import math
 
 from study_run import expect, number, run
 
-KINDS = {"geometry", "kinematics", "energy", "constraint", "enforcement", "solver"}
+KINDS = {"geometry", "kinematics", "energy", "constraint", "enforcement", "solver", "transport", "ground-cost"}
 
 
 def test(study):
@@ -25,6 +25,13 @@ def test(study):
                    {"solver": "active-set"}, {"solver": "ipopt"}, {"solver": "nlopt"}]:
         found = number(study.one(**choice), "energy_total_N_mm")
         expect(abs(found - base) < 1e-8 * base, f"{choice}: {found} N mm instead of {base}")
+    losses = {(document["composition"]["loss"][0]["transport"]["type"],
+               document["composition"]["loss"][0]["ground-cost"]["type"]): document["losses"][0]["value"]
+              for document in documents if document["losses"]}
+    expect(all(value is not None and value > 0 for value in losses.values()), f"losses: {losses}")
+    exact = losses["exact", "euclidean"]
+    expect(abs(losses["exact-lemon", "euclidean"] - exact) < 1e-10 * exact, f"losses: {losses}")
+
     expect_closed_form(study, 0.00418951, "peak_displacement_mm", 2e-4, geometry="line")
     # M²L/2EI less the half segment at the rod's end, which has no bending of its own
     expect_closed_form(study, -4.975, "energy_total_N_mm", 1e-9, energy="dead-moment")

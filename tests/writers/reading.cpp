@@ -20,7 +20,7 @@ std::string refusal(const std::string& document) {
 }  // namespace
 
 TEST_CASE("writers name what a document lacks, and where") {
-  const std::string mend = "; give the document that `bowstring solve --json` prints";
+  const std::string mend = "; give the document as `bowstring` prints it with --json";
   const std::string good = small_result(2);
   CHECK(refusal("{\"format\":\n  oops}") ==
         "line 2, column 3: found text that is not JSON, expected a "

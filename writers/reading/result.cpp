@@ -2,94 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
-#include <nlohmann/json.hpp>
-
 #include "plugins/sdk/guard.hpp"
+#include "writers/reading/fields.hpp"
 
 namespace bowstring {
 
 namespace {
 
+using fields::found;
+using fields::list;
+using fields::member;
+using fields::number;
+using fields::points;
+using fields::refuse;
+using fields::text;
 using Json = nlohmann::json;
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* mend = "; give the document that `bowstring solve --json` prints";
-
-[[noreturn]] void refuse(const std::string& where, const std::string& found, const std::string& expected) {
-  throw StatusError(Code::invalid_input, where + ": found " + found + ", expected " + expected + mend);
-}
-
-std::string found(const Json& value) {
-  return value.is_string() ? "\"" + value.get<std::string>() + "\"" : value.type_name();
-}
-
-Json parse(const char* text) {
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    const char* stop = text + std::min(error.byte > 0 ? error.byte - 1 : 0, std::strlen(text));
-    const auto line = 1 + std::count(text, stop, '\n');
-    const char* start = stop;
-    while (start != text && start[-1] != '\n') --start;
-    refuse("line " + std::to_string(line) + ", column " + std::to_string(stop - start + 1), "text that is not JSON",
-           "a \"bowstring.result/1\" document");
-  }
-}
-
-/// A member, or null where the table has none.
-const Json& member(const Json& table, const char* key) {
-  static const Json null;
-  if (!table.is_object()) return null;
-  const auto entry = table.find(key);
-  return entry == table.end() ? null : *entry;
-}
-
-std::string text(const Json& table, const char* key) {
-  const Json& value = member(table, key);
-  return value.is_string() ? value.get<std::string>() : std::string();
-}
-
-double number(const Json& value, const std::string& where) {
-  if (value.is_null()) return not_a_number;
-  if (!value.is_number()) refuse(where, found(value), "a number or null");
-  return value.get<double>();
-}
-
-double number(const Json& table, const char* key, const std::string& where) {
-  return number(member(table, key), where + "." + key);
-}
-
-/// The entries of a list that may be left out.
-const Json& list(const Json& table, const char* key, const std::string& where) {
-  static const Json none = Json::array();
-  const Json& value = member(table, key);
-  if (value.is_null()) return none;
-  if (!value.is_array()) refuse(where + key, found(value), "a list");
-  return value;
-}
-
-Vector3 point(const Json& row, int dimension, const std::string& where) {
-  const auto expected = static_cast<std::size_t>(dimension);
-  if (!row.is_array() || row.size() != expected) {
-    refuse(where, row.is_array() ? std::to_string(row.size()) + " numbers" : found(row),
-           std::to_string(dimension) + " numbers");
-  }
-  Vector3 out;
-  for (int k = 0; k < dimension; ++k) out[k] = number(row[static_cast<std::size_t>(k)], where);
-  return out;
-}
-
-std::vector<Vector3> points(const Json& table, const char* key, int dimension, const std::string& where) {
-  const Json& rows = list(table, key, where + ".");
-  std::vector<Vector3> out;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    out.push_back(point(rows[i], dimension, where + "." + key + "[" + std::to_string(i) + "]"));
-  }
-  return out;
-}
+constexpr double not_a_number = fields::not_a_number;
 
 void expect_nodes(std::size_t entries, std::size_t nodes, const std::string& where) {
   if (entries == nodes) return;
@@ -194,7 +125,7 @@ ResultContact read_contact(const Result& result, const Json& table, const std::s
   contact.gap = number(table, "gap_mm", where);
   const Json& direction = member(table, "direction");
   contact.direction = direction.is_null() ? Vector3{{not_a_number, not_a_number, not_a_number}}
-                                          : point(direction, result.dimension, where + ".direction");
+                                          : fields::point(direction, result.dimension, where + ".direction");
   return contact;
 }
 
@@ -221,7 +152,11 @@ bool read_patient_axes(const Json& composition) {
 }  // namespace
 
 Result read_result(const char* json) {
-  const Json document = parse(json);
+  const Json document = fields::parse(json);
+  if (text(document, "format") == "bowstring.transport/1") {
+    throw StatusError(Code::unsupported,
+                      "this writer takes results, and no comparison of measures; choose another, as svg, or --out");
+  }
   if (text(document, "format") != "bowstring.result/1") {
     refuse("format", found(member(document, "format")), "\"bowstring.result/1\"");
   }

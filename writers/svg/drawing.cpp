@@ -143,18 +143,18 @@ std::string supports(const Result& result, const Panel& panel) {
   return out + close_group();
 }
 
-std::string caption(const Result& result, const Panel& panel) {
+}  // namespace
+
+std::string caption(const Panel& panel, int axes) {
   std::string out = open_group({{"fill", style::soft_ink}, {"font-size", "11"}});
   double y = panel.top + 14.0;
   for (const std::string& row : wrapped(panel.view.name, 10)) {
     out += text_at({{page_margin, y}}, row);
     y += 13.0;
   }
-  out += triad({{page_margin + 34.0, panel.top + 0.5 * panel.height + 14.0}}, panel.view, result.dimension);
+  out += triad({{page_margin + 34.0, panel.top + 0.5 * panel.height + 14.0}}, panel.view, axes);
   return out + close_group();
 }
-
-}  // namespace
 
 std::string draw_panels(const Result& result, const Layout& layout) {
   std::string out;
@@ -162,7 +162,7 @@ std::string draw_panels(const Result& result, const Layout& layout) {
     const Panel& panel = layout.panels[i];
     out += open_group({{"id", "view-" + std::to_string(i + 1)}});
     out += walls(result, panel) + centerlines(result, panel) + supports(result, panel) + wires(result, panel);
-    out += contacts(result, panel) + caption(result, panel);
+    out += contacts(result, panel) + caption(panel, result.dimension);
     out += close_group();
   }
   return out;

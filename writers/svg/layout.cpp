@@ -30,14 +30,20 @@ struct Extent {
   Vector2 middle() const { return 0.5 * (lower + upper); }
 };
 
-Extent extent(const Result& result, const View& view) {
+Extent extent(const std::vector<Disc>& shown, const View& view) {
   Extent out;
+  for (const Disc& disc : shown) {
+    if (is_finite(disc.center)) out.include(project(view, disc.center), disc.radius);
+  }
+  return out;
+}
+
+std::vector<Disc> discs_of(const Result& result) {
+  std::vector<Disc> out;
   for (const ResultCurve& curve : result.curves) {
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
       const double radius = std::isfinite(curve.radius[i]) ? curve.radius[i] : 0.0;
-      for (const Vector3& point : {curve.points[i], curve.reference[i]}) {
-        if (is_finite(point)) out.include(project(view, point), radius);
-      }
+      for (const Vector3& point : {curve.points[i], curve.reference[i]}) out.push_back({point, radius});
     }
   }
   return out;
@@ -64,13 +70,15 @@ double round_down(double value) {
   return power;
 }
 
-Layout arrange(const Result& result, double top) {
+Layout arrange(const Result& result, double top) { return arrange(choose_views(result), discs_of(result), top); }
+
+Layout arrange(const std::vector<View>& views, const std::vector<Disc>& shown, double top) {
   Layout out;
   out.width = page_width;
   std::vector<Extent> extents;
   double width = 0.0, height = 0.0;
-  for (const View& view : choose_views(result)) {
-    extents.push_back(extent(result, view));
+  for (const View& view : views) {
+    extents.push_back(extent(shown, view));
     if (extents.back().empty()) {
       throw StatusError(Code::invalid_input,
                         "curves: found no point with finite coordinates, expected at least one; "

@@ -27,8 +27,16 @@ constexpr double page_width = 960.0;
 constexpr double page_margin = 28.0;
 constexpr double gutter = 92.0;  ///< left of the drawings, for the names of the views and their axes
 
+/// What has to be seen.
+struct Disc {
+  Vector3 center;
+  double radius = 0.0;  ///< mm
+};
+
 /// Stacks the views from `top` on, with one scale that makes them fit. Throws a StatusError with `invalid_input` where
-/// the curves have no finite point.
+/// nothing has a finite center.
+Layout arrange(const std::vector<View>& views, const std::vector<Disc>& shown, double top);
+/// The same of a result's curves in both states.
 Layout arrange(const Result& result, double top);
 
 /// The largest of 1, 2, 5 times a power of ten that is at most `value`.

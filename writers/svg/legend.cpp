@@ -12,18 +12,14 @@ namespace bowstring {
 namespace {
 
 constexpr double row_height = 26.0;
-constexpr double sample_width = 30.0;  // of an entry's symbol
+constexpr double sample_width = legend_symbol_width;
 constexpr double between_entries = 24.0;
 constexpr double character_width = 6.7;  // of a sans-serif font of 12 px, on average
 constexpr double bar_tick = 4.0;
 
-/// A symbol drawn in a box `sample_width` wide around a baseline at y = 0, with its text.
-struct Entry {
-  std::string symbol, text;
-  double width() const {
-    return sample_width + 8.0 + character_width * static_cast<double>(text.size()) + between_entries;
-  }
-};
+double width(const LegendEntry& entry) {
+  return legend_symbol_width + 8.0 + character_width * static_cast<double>(entry.text.size()) + between_entries;
+}
 
 std::string sample_line(const char* color, const char* width, const char* dashes) {
   Attributes attributes{{"stroke", color}, {"stroke-width", width}};
@@ -31,7 +27,7 @@ std::string sample_line(const char* color, const char* width, const char* dashes
   return line({{0.0, 0.0}}, {{sample_width, 0.0}}, attributes);
 }
 
-Entry lumen_entry() {
+LegendEntry lumen_entry() {
   const Polyline box{{{0.0, -7.0}}, {{sample_width, -7.0}}, {{sample_width, 7.0}}, {{0.0, 7.0}}};
   std::string symbol = area({box}, {{"fill", style::lumen}});
   for (const double y : {-7.0, 7.0}) {
@@ -40,7 +36,7 @@ Entry lumen_entry() {
   return {symbol + sample_line(style::vessel, style::centerline_width, ""), "vessel, State 2"};
 }
 
-Entry reference_entry() {
+LegendEntry reference_entry() {
   std::string symbol;
   for (const double y : {-7.0, 7.0}) {
     symbol += line(
@@ -56,7 +52,7 @@ std::string force_text(double force) {
 }
 
 /// Circles of the largest force and of a quarter of it, which has half the radius.
-Entry contact_entry(double largest) {
+LegendEntry contact_entry(double largest) {
   std::string symbol = open_group(contact_attributes());
   symbol += contact_symbol({{8.0, 0.0}}, style::contact_radius(0.25 * largest, largest));
   symbol += contact_symbol({{22.0, 0.0}}, style::contact_radius(largest, largest));
@@ -64,8 +60,8 @@ Entry contact_entry(double largest) {
           "contact, " + force_text(0.25 * largest) + " and " + force_text(largest) + ": area by force"};
 }
 
-std::vector<Entry> entries(const Result& result) {
-  std::vector<Entry> out;
+std::vector<LegendEntry> entries(const Result& result) {
+  std::vector<LegendEntry> out;
   const auto is_vessel = [](const ResultCurve& curve) { return !curve.wire; };
   if (std::any_of(result.curves.begin(), result.curves.end(), is_vessel)) {
     out.push_back(reference_entry());
@@ -99,20 +95,24 @@ std::string scale_bar(const Layout& layout, double y, double& right) {
 }  // namespace
 
 std::string draw_legend(const Result& result, const Layout& layout, double& height) {
+  return draw_legend(entries(result), layout, height);
+}
+
+std::string draw_legend(const std::vector<LegendEntry>& entries, const Layout& layout, double& height) {
   double y = layout.bottom + 34.0;
   double x = 0.0;
   std::string out = open_group({{"id", "legend"}, {"fill", style::ink}, {"font-size", "12"}});
   out += scale_bar(layout, y, x);
   const double first_column = x + 2.0 * between_entries;
   x = first_column;
-  for (const Entry& entry : entries(result)) {
-    if (x > first_column && x + entry.width() > layout.width) {
+  for (const LegendEntry& entry : entries) {
+    if (x > first_column && x + width(entry) > layout.width) {
       x = first_column;
       y += row_height;
     }
     out += open_group({{"transform", "translate(" + two_decimals(x) + " " + two_decimals(y) + ")"}}) + entry.symbol +
            text_at({{sample_width + 8.0, 4.0}}, entry.text) + close_group();
-    x += entry.width();
+    x += width(entry);
   }
   height = y + row_height;
   return out + close_group();

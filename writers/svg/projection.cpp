@@ -1,5 +1,6 @@
 #include "writers/svg/projection.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -40,7 +41,23 @@ double largest_component(const Eigen::Vector3d& axis) {
   return axis[largest];
 }
 
+/// Axis 1 along the chord from the first to the last of the points, axis 2 along its largest component.
+View principal_view(const std::vector<Vector3>& points) {
+  const Eigen::Matrix3d axes = principal_axes(points);
+  const Vector3 chord = points.back() - points.front();
+  return {oriented(axes.col(0), dot(chord, oriented(axes.col(0), 1.0))),
+          oriented(axes.col(1), largest_component(axes.col(1))), "principal axes 1, 2"};
+}
+
+bool lie_in_one_height(const std::vector<Vector3>& points) {
+  return std::all_of(points.begin(), points.end(), [&](const Vector3& point) { return point[2] == points.front()[2]; });
+}
+
 }  // namespace
+
+View widest_view(const std::vector<Vector3>& points) {
+  return lie_in_one_height(points) ? View{Vector3::unit(0), Vector3::unit(1), ""} : principal_view(points);
+}
 
 std::vector<View> choose_views(const Result& result) {
   const View plane{Vector3::unit(0), Vector3::unit(1), ""};
@@ -48,11 +65,8 @@ std::vector<View> choose_views(const Result& result) {
   std::vector<Vector3> points = reference_points(result, false);
   if (points.empty()) points = reference_points(result, true);
   if (points.empty()) return {plane};
-  const Eigen::Matrix3d axes = principal_axes(points);
-  const Vector3 chord = points.back() - points.front();
-  const Vector3 first = oriented(axes.col(0), dot(chord, oriented(axes.col(0), 1.0)));
-  const Vector3 second = oriented(axes.col(1), largest_component(axes.col(1)));
-  return {{first, second, "principal axes 1, 2"}, {first, cross(first, second), "principal axes 1, 3"}};
+  const View widest = principal_view(points);
+  return {widest, {widest.right, cross(widest.right, widest.up), "principal axes 1, 3"}};
 }
 
 Vector2 project(const View& view, const Vector3& point) { return {{dot(view.right, point), dot(view.up, point)}}; }

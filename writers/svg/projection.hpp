@@ -19,6 +19,10 @@ struct View {
 /// of these points, axis 2 along its largest component.
 std::vector<View> choose_views(const Result& result);
 
+/// The view onto the two principal axes of points in space along which they spread most; x and y where they all lie in
+/// one plane of these.
+View widest_view(const std::vector<Vector3>& points);
+
 Vector2 project(const View& view, const Vector3& point);
 
 bool is_finite(const Vector3& point);
