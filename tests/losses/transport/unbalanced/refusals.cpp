@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/transport/one_sided.hpp"
 #include "problems.hpp"
 
 using namespace transport_test;
@@ -36,4 +37,16 @@ TEST_CASE("weights that are flawed are refused; sums that differ are not") {
   for (const std::vector<double>& weights : {std::vector<double>{0.0, 0.0}, {-1.0, 2.0}, {std::nan(""), 1.0}}) {
     CHECK(transport.compare(std::vector<double>{1.0}, weights, cost, out).code == Code::invalid_input);
   }
+}
+
+TEST_CASE("one-sided derivatives are of plans with fixed sums") {
+  std::mt19937 random(1);
+  const Measure a = random_cloud(random, 3), b = random_cloud(random, 4);
+  TransportComparison transport = unbalanced("total-variation", 1.0);
+  const TransportResult at = compare(transport, a, b);
+  const std::vector<double> motion_a(18, 1.0), motion_b(24, 0.0);
+  OneSidedDerivatives out;
+  const Status status = one_sided_derivatives(transport, a, b, at, motion_a, motion_b, out);
+  CHECK(status.code == Code::unsupported);
+  CHECK(status.text.find("lets mass go") != std::string::npos);
 }
