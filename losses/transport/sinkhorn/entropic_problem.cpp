@@ -170,7 +170,6 @@ void EntropicProblem::solve_symmetric(double epsilon, const Limits& limits) {
       marginal_error += a_[i] * std::fabs(std::expm1((f[i] - next[i]) / epsilon));
     }
     ++iterations;
-    // The full step on the last one: both sides of a pair of potentials then fit to rounding.
     if (marginal_error <= limits.tolerance) break;
     f = 0.5 * (f + next);
   }

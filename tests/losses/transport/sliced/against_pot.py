@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""`sliced` and POT on 100 random problems, over the same lines.
+
+    against_pot.py SOLVE_TRANSPORT_PROBLEMS PRINT_DIRECTIONS
+"""
+import pathlib
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import pot  # noqa: E402
+from pot import numpy, ot  # noqa: E402
+
+PROBLEMS = 100
+
+
+def directions(program, count, seed):
+    """3 × count."""
+    out = subprocess.run([program, str(count), str(seed)], check=True, capture_output=True, text=True).stdout
+    return numpy.array([[float(number) for number in line.split()] for line in out.splitlines()]).T
+
+
+def main():
+    random = numpy.random.default_rng(8)
+    cases, problems = [], []
+    for _ in range(PROBLEMS):
+        a, b = pot.random_measure(random, 10.0), pot.random_measure(random, 10.0)
+        count, seed = int(random.integers(1, 80)), int(random.integers(0, 1000))
+        cases.append((a, b, count, seed))
+        problems.append(pot.problem("sliced", a, b, {"directions": count, "seed": seed}))
+    largest = pot.Largest()
+    for (a, b, count, seed), ours in zip(cases, pot.answers(sys.argv[1], problems)):
+        lines = directions(sys.argv[2], count, seed)
+        assert lines.shape == (3, count), f"{lines.shape} directions, expected 3 x {count}"
+        largest.note("length of a direction", abs((lines**2).sum(axis=0) - 1.0).max(), 1e-14)
+        # POT 0.8.2 divides by `n_projections` even where it is given the lines.
+        theirs = ot.sliced_wasserstein_distance(a[0], b[0], a[1], b[1], count, projections=lines, p=2) ** 2
+        largest.note("value, relative", abs(ours["value"] - theirs) / theirs, 1e-12)
+        plan = pot.plan_of(ours, (len(a[1]), len(b[1])))
+        squared = ((a[0][:, None] - b[0][None]) ** 2).sum(axis=2)
+        largest.note("cost of the plan, relative", abs(ours["transport_cost"] - (squared * plan).sum()) / theirs, 1e-12)
+        # The plans of lines are plans: the mean's cost is not below the least.
+        least = ot.emd2(a[1], b[1], squared)
+        largest.note("below the least cost, relative", max(least - ours["transport_cost"], 0.0) / least, 1e-12)
+        largest.note("mass of rows and columns", max(abs(plan.sum(1) - a[1]).max(), abs(plan.sum(0) - b[1]).max()), 1e-14)
+    largest.report()
+
+
+if __name__ == "__main__":
+    main()
