@@ -1,15 +1,20 @@
 #!/usr/bin/env python3
-"""Draws docs/transport-switches.svg: a transport value and its derivative through switches of the optimal plan.
+"""Draws the figures of docs/transport.md.
 
-    docs/make_transport_figures.py WALK_PLANS FILE.svg
+    docs/make_transport_figures.py switches WALK_PLANS docs/transport-switches.svg
+    docs/make_transport_figures.py error BOWSTRING [docs/transport-error.svg]
 
-WALK_PLANS is the program build/tests/transport/walk-plans, which computes what is drawn.
+`switches`: a transport value and its derivative through switches of the optimal plan, which the program WALK_PLANS of
+the build (tests/transport/walk-plans) computes. `error`: time against error of `sinkhorn` beside `exact`, measured here and printed.
 """
 import json
 import math
 import os
+import pathlib
+import statistics
 import subprocess
 import sys
+import tempfile
 
 WIDTH, HEIGHT = 900, 548
 LEFT, TOP, PANEL_WIDTH, PANEL_HEIGHT, GAP_X, GAP_Y = 70, 56, 350, 175, 100, 62
@@ -103,7 +108,7 @@ def draw_walk(column, walk, title, x_ticks):
     return out
 
 
-def figure(walks):
+def switch_figure(walks):
     quarter = math.pi / 4
     square_ticks = [(k * quarter, words) for k, words in enumerate(["0", "π/4", "π/2", "3π/4", "π"])]
     knot_ticks = [(k * math.pi / 6, words) for k, words in enumerate(["0", "π/6", "π/3", "π/2", "2π/3"])]
@@ -121,14 +126,89 @@ def figure(walks):
     return "\n".join(parts + ["</svg>", ""])
 
 
-def main():
-    if len(sys.argv) != 3:
-        sys.exit(__doc__)
-    program, file = sys.argv[1:]
-    walks = json.loads(subprocess.run([program], check=True, capture_output=True, text=True).stdout)
+def write_curve(file, count, shape):
+    rows = [",".join(repr(x) for x in shape(k / (count - 1))) for k in range(count)]
+    file.write_text("x_mm,y_mm,z_mm\n" + "\n".join(rows) + "\n")
+
+
+def planned_path(t):
+    return 150 * t, 25 * math.sin(2 * math.pi * t), 10 * math.sin(math.pi * t)
+
+
+def observed_path(t):
+    return 150 * t + 2 * math.sin(5 * t), 18 * math.sin(2 * math.pi * t + 0.2) + 1, 14 * math.sin(math.pi * t)
+
+
+def timed(bowstring, files, *options, repeats=5):
+    """The document of one comparison, and the median of the seconds that several took."""
+    call = [bowstring, "transport", *files, "--json", *options]
+    documents = [json.loads(subprocess.run(call, check=True, capture_output=True, text=True).stdout) for _ in range(repeats)]
+    return documents[0], statistics.median(d["seconds"]["cost"] + d["seconds"]["solve"] for d in documents)
+
+
+def measure_errors(bowstring, count=200):
+    """exact: (value, seconds); sinkhorn: [(epsilon, relative error of <C, P>, seconds, iterations)]."""
+    with tempfile.TemporaryDirectory() as folder:
+        files = [pathlib.Path(folder) / name for name in ("a.csv", "b.csv")]
+        write_curve(files[0], count, planned_path)
+        write_curve(files[1], count, observed_path)
+        exact, seconds = timed(bowstring, files)
+        rows = []
+        for epsilon in (300, 100, 30, 10, 3, 1, 0.3, 0.1, 0.03):
+            options = ["--method", "sinkhorn", "--set", f"epsilon={epsilon}", "--set", "debiased=false"]
+            found, taken = timed(bowstring, files, *options, repeats=3)
+            error = found["transport_cost"] / exact["value"] - 1
+            rows.append((epsilon, error, taken, found["iterations"]))
+    return (exact["value"], seconds), rows
+
+
+def print_errors(exact, rows):
+    print(f"exact: {exact[0]:.6f} mm^2 in {1e3 * exact[1]:.2f} ms")
+    print("epsilon_mm2,relative_error,milliseconds,iterations,times_exact")
+    for epsilon, error, seconds, iterations in rows:
+        print(f"{epsilon:g},{error:.3e},{1e3 * seconds:.2f},{iterations},{seconds / exact[1]:.1f}")
+
+
+def error_figure(exact, rows):
+    """Logarithms of both axes; what is exact to rounding stands at the lower edge."""
+    points = [(math.log10(1e3 * seconds), math.log10(error), f"{epsilon:g}") for epsilon, error, seconds, _ in rows]
+    exact_x = math.log10(1e3 * exact[1])
+    xs = [x for x, _, _ in points] + [exact_x]
+    panel = Panel(0, 0, (math.floor(min(xs)), math.ceil(max(xs))), [y for _, y, _ in points])
+    decades = range(math.floor(panel.x0), math.ceil(panel.x1) + 1)
+    out = frame(panel, "", "time, ms", "log10 of the relative error", [(k, f"{10.0**k:g}") for k in decades])
+    out.append(line([(panel.x(x), panel.y(y)) for x, y, _ in points], "#1f5fa8"))
+    for x, y, words in points:
+        out.append(f'<circle cx="{panel.x(x):.2f}" cy="{panel.y(y):.2f}" r="3" fill="#1f5fa8"/>')
+        out.append(text(panel.x(x) + 7, panel.y(y) - 5, words, "start", 11))
+    x = panel.x(exact_x)
+    out.append(f'<path d="M{x:.2f} {panel.top}V{panel.top + PANEL_HEIGHT}" stroke="#d9822b" stroke-width="2"/>')
+    out.append(text(x, panel.top - 8, "exact", color="#b0611a"))
+    width, height = PANEL_WIDTH + LEFT + 30, TOP + PANEL_HEIGHT + 50
+    return "\n".join(
+        [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}" font-family="sans-serif">',
+         f'<rect width="{width}" height="{height}" fill="white"/>',
+         text(LEFT + PANEL_WIDTH / 2, 20, "sinkhorn, by ε in mm²: two curves of 200 points", size=14, color="#111")]
+        + out + ["</svg>", ""])
+
+
+def write(file, content):
     with open(file + ".new", "w", encoding="utf-8") as out:
-        out.write(figure(walks))
+        out.write(content)
     os.replace(file + ".new", file)
+
+
+def main():
+    if len(sys.argv) == 4 and sys.argv[1] == "switches":
+        walks = json.loads(subprocess.run([sys.argv[2]], check=True, capture_output=True, text=True).stdout)
+        write(sys.argv[3], switch_figure(walks))
+    elif len(sys.argv) in (3, 4) and sys.argv[1] == "error":
+        measured = measure_errors(sys.argv[2])
+        print_errors(*measured)
+        if len(sys.argv) == 4:
+            write(sys.argv[3], error_figure(*measured))
+    else:
+        sys.exit(__doc__)
 
 
 if __name__ == "__main__":

@@ -76,8 +76,9 @@ struct TransportAnswer {
   TransportCertificate certificate;
   double gap = 0.0;  ///< primal minus dual value of what the method minimises
 
-  /// Whether another plan has the same value, and a lower bound of what any other vertex costs more, per unit of mass
-  /// that it moves elsewhere. Only of methods whose plan is a vertex: `uniqueness_known`.
+  /// Whether another plan has the same value, and a lower bound of what any other vertex costs more, per unit of the
+  /// largest change of an entry of the plan; +∞ where there is no other. Only of methods whose plan is a vertex:
+  /// `uniqueness_known`.
   bool uniqueness_known = false;
   bool multiple = false;
   double slack = 0.0;

@@ -82,6 +82,11 @@ Status one_sided_derivatives(const TransportComparison& comparison, const Measur
     return Status::failure(Code::unsupported, "transport '" + comparison.choice().method.name +
                                                   "' does not find vertices of the optimal plans; choose 'exact'");
   }
+  if (comparison.lets_mass_go()) {
+    return Status::failure(Code::unsupported, "transport '" + comparison.choice().method.name +
+                                                  "' lets mass go, and its optimal plans are not those of fixed sums; "
+                                                  "choose 'exact'");
+  }
   if (motion_a.size() != 6 * a.count() || motion_b.size() != 6 * b.count()) {
     return Status::failure(Code::invalid_input, "motions of " + std::to_string(motion_a.size()) + " and " +
                                                     std::to_string(motion_b.size()) +

@@ -20,7 +20,7 @@ struct OneSidedDerivatives {
 /// body twists (ω, ν) of their places, count × 6; of points without orientation ω counts for nothing and the axes are
 /// the global ones. Both extremes over the optimal face are found by the method itself, started cold, with the rates of
 /// cost on arcs without reduced cost (to 1e-9 of the certificate's scale) and the others forbidden. `unsupported` where
-/// the method does not know whether its plan is unique.
+/// the method does not know whether its plan is unique, or lets mass go.
 Status one_sided_derivatives(const TransportComparison& comparison, const Measure& a, const Measure& b,
                              const TransportResult& at, Span<const double> motion_a, Span<const double> motion_b,
                              OneSidedDerivatives& out);

@@ -75,6 +75,7 @@ class TransportComparison {
 
   void forget() noexcept { method_->forget(); }
   const TransportChoice& choice() const noexcept { return choice_; }
+  bool lets_mass_go() const noexcept { return method_->lets_mass_go(); }
   const GroundCost& ground_cost() const noexcept { return *cost_; }
 
  private:

@@ -3,7 +3,6 @@
 //
 //   benchmark-transport-lemon FILE REPEATS
 
-#define LEMON_ONLY_TEMPLATES
 #include <lemon/network_simplex.h>
 #include <lemon/smart_graph.h>
 

@@ -20,7 +20,7 @@ def main():
     root, program = pathlib.Path(sys.argv[1]), sys.argv[2]
     with tempfile.TemporaryDirectory() as folder:
         drawn = pathlib.Path(folder) / "switches.svg"
-        subprocess.run([sys.executable, root / "docs" / "make_transport_figures.py", program, drawn], check=True)
+        subprocess.run([sys.executable, root / "docs" / "make_transport_figures.py", "switches", program, drawn], check=True)
         now, shipped = switches(drawn), switches(root / "docs" / "transport-switches.svg")
     assert len(now) > 10, f"{len(now)} switches drawn"
     assert len(now) == len(shipped), f"{len(now)} switches drawn, {len(shipped)} in docs/transport-switches.svg: draw it anew"

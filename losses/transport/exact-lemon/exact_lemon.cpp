@@ -1,4 +1,3 @@
-#define LEMON_ONLY_TEMPLATES
 #include <lemon/network_simplex.h>
 #include <lemon/smart_graph.h>
 
@@ -17,6 +16,7 @@
 #include "losses/transport/network-simplex/dense_costs.hpp"
 #include "losses/transport/network-simplex/exact_answer.hpp"
 #include "losses/transport/network-simplex/masses.hpp"
+#include "losses/transport/network-simplex/row_kernels.hpp"
 #include "plugins/sdk/plugin.hpp"
 
 // What LEMON asks of a type of costs, besides.
@@ -72,14 +72,14 @@ struct CostMap {
   using Key = lemon::SmartDigraph::Arc;
   using Value = CostType;
   const double* cost;
-  double barrier;
+  double barrier, factor;
 
   Value operator[](Key arc) const {
     const double of_arc = cost[lemon::SmartDigraph::id(arc)];
     if constexpr (std::is_same_v<Value, double>) {
-      return of_arc;
+      return factor * of_arc;
     } else {
-      return BarredCost::of(of_arc, barrier);
+      return of_arc < barrier ? BarredCost(factor * of_arc) : BarredCost(1, 0.0);
     }
   }
 };
@@ -102,11 +102,22 @@ struct Optimum {
   std::vector<CostType> row, column;
 };
 
+/// The power of two that brings the costs below the barrier to one: LEMON's artificial arcs cost one more than all
+/// others, and small costs would be lost beside that.
+double unit_of(const double* cost, std::size_t count, double barrier) {
+  const double largest = simplex::largest_below(cost, count, barrier);
+  return largest > 0.0 ? std::ldexp(1.0, std::max(std::ilogb(largest), -1000)) : 1.0;
+}
+
+BarredCost scaled(double factor, BarredCost value) { return {value.barred, factor * value.cost}; }
+double scaled(double factor, double value) { return factor * value; }
+
 template <class CostType>
 Optimum<CostType> run(const DenseGraph& dense, const Masses& masses, const double* cost, double barrier) {
   using Method = lemon::NetworkSimplex<lemon::SmartDigraph, std::int64_t, CostType>;
   Method method(dense.graph());
-  method.supplyMap(SupplyMap{masses}).costMap(CostMap<CostType>{cost, barrier});
+  const double unit = unit_of(cost, masses.supply.size() * masses.demand.size(), barrier);
+  method.supplyMap(SupplyMap{masses}).costMap(CostMap<CostType>{cost, barrier, 1.0 / unit});
   if (method.run() != Method::OPTIMAL) throw StatusError(Code::failed, "LEMON finds no optimum of this problem");
   Optimum<CostType> out;
   const int rows = static_cast<int>(masses.supply.size()), columns = static_cast<int>(masses.demand.size());
@@ -114,8 +125,8 @@ Optimum<CostType> run(const DenseGraph& dense, const Masses& masses, const doubl
     const std::int64_t mass = method.flow(dense.arc(place));
     if (mass > masses.noise) out.plan.push_back({place / columns, place % columns, mass});
   }
-  for (int i = 0; i < rows; ++i) out.row.push_back(-method.potential(dense.node(i)));
-  for (int j = 0; j < columns; ++j) out.column.push_back(method.potential(dense.node(rows + j)));
+  for (int i = 0; i < rows; ++i) out.row.push_back(scaled(unit, -method.potential(dense.node(i))));
+  for (int j = 0; j < columns; ++j) out.column.push_back(scaled(unit, method.potential(dense.node(rows + j))));
   return out;
 }
 
@@ -169,7 +180,7 @@ class ExactLemon final : public Transport {
       return !(cost[static_cast<std::size_t>(arc.row) * masses.demand.size() + static_cast<std::size_t>(arc.column)] <
                barrier);
     };
-    if (std::any_of(out.plan.begin(), out.plan.end(), barred)) return std::nullopt;
+    if (std::any_of(out.basis.begin(), out.basis.end(), barred)) return std::nullopt;
     simplex::join_potentials(cost, barrier, found.row, found.column, out.row, out.column);
     return out;
   }

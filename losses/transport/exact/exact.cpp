@@ -1,5 +1,3 @@
-#include <utility>
-
 #include "core/interfaces/transport.hpp"
 #include "losses/transport/network-simplex/dense_costs.hpp"
 #include "losses/transport/network-simplex/exact_answer.hpp"
@@ -28,16 +26,14 @@ class Exact final : public Transport {
     simplex_.set_masses(simplex::masses_of(problem.weight_a, problem.weight_b));
     out = {};
     out.warm = simplex_.has_tree();
-    std::vector<simplex::Arc> plan;
     // Potentials of costs that are partly lower bounds are feasible, and they prove the plan as soon as its own arcs
     // have their costs.
     do {
       if (!simplex_.solve(costs_.data())) simplex::refuse_forbidden(simplex_.plan(), costs_.data(), simplex_.masses());
       out.iterations += simplex_.pivots();
-      plan = simplex_.plan();
-    } while (costs_.evaluate(plan) > 0);
+    } while (costs_.evaluate(simplex_.plan()) > 0);
     simplex::write_answer(problem, costs_.data(), simplex_.masses(),
-                          {std::move(plan), simplex_.row_potential(), simplex_.column_potential(), simplex_.barrier()},
+                          {simplex_.basis(), simplex_.row_potential(), simplex_.column_potential(), simplex_.barrier()},
                           out);
     out.memory_bytes = simplex_.memory_bytes() + costs_.memory_bytes();
   }

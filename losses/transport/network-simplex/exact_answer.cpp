@@ -9,13 +9,14 @@
 #include <string>
 #include <utility>
 
+#include "losses/transport/network-simplex/row_kernels.hpp"
 #include "plugins/sdk/guard.hpp"
 
 namespace bowstring::simplex {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double tight = 1e-12;  // reduced costs up to here, relative to the scale of costs, count as none
+constexpr double none = 1e-12;  // reduced costs up to here, relative to the scale of costs, count as none
 
 double dot(Span<const double> weight, const std::vector<double>& potential) {
   double sum = 0.0;
@@ -28,15 +29,6 @@ double largest_error(Span<const double> weight, const std::vector<int>& place, c
   for (std::size_t k = 0; k < mass.size(); ++k) left[static_cast<std::size_t>(place[k])] -= mass[k];
   double largest = 0.0;
   for (const double error : left) largest = std::max(largest, std::fabs(error));
-  return largest;
-}
-
-double largest_cost(const double* cost, std::size_t count, double barrier) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < count; ++k) {
-    const double size = std::fabs(cost[k]);
-    largest = size > largest && size < barrier ? size : largest;
-  }
   return largest;
 }
 
@@ -62,16 +54,20 @@ class Sets {
   std::vector<int> above_;
 };
 
-/// Whether a graph, its arcs as (from, to), has a cycle: what cannot be taken away from its ends.
-bool has_cycle(std::vector<std::pair<int, int>> arcs, std::size_t nodes) {
-  std::sort(arcs.begin(), arcs.end());
+using Link = std::pair<int, int>;  // from one node to another
+
+/// Whether a graph has a cycle: whether something is left when all that nothing leads to is taken away, again and
+/// again.
+bool has_cycle(const std::vector<Link>& links, std::size_t nodes) {
   std::vector<std::size_t> first(nodes + 1, 0);
-  std::vector<int> incoming(nodes, 0), free;
-  for (const auto& [from, to] : arcs) {
-    ++first[static_cast<std::size_t>(from) + 1];
-    ++incoming[static_cast<std::size_t>(to)];
+  std::vector<int> incoming(nodes, 0), to(links.size()), free;
+  for (const auto& [a, b] : links) {
+    ++first[static_cast<std::size_t>(a) + 1];
+    ++incoming[static_cast<std::size_t>(b)];
   }
   std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::size_t> filled(first.begin(), first.end() - 1);
+  for (const auto& [a, b] : links) to[filled[static_cast<std::size_t>(a)]++] = b;
   for (std::size_t k = 0; k < nodes; ++k) {
     if (incoming[k] == 0) free.push_back(static_cast<int>(k));
   }
@@ -80,69 +76,116 @@ bool has_cycle(std::vector<std::pair<int, int>> arcs, std::size_t nodes) {
     const auto node = static_cast<std::size_t>(free.back());
     free.pop_back();
     for (std::size_t k = first[node]; k < first[node + 1]; ++k) {
-      const int to = arcs[k].second;
-      if (--incoming[static_cast<std::size_t>(to)] == 0) free.push_back(to);
+      if (--incoming[static_cast<std::size_t>(to[k])] == 0) free.push_back(to[k]);
     }
   }
   return taken < nodes;
 }
 
-struct Tight {
-  int row, column;
-  double reduced_cost;
-};
-
-/// What one look at all reduced costs tells.
+/// Potentials as what is added to costs, and what that tells.
 struct Look {
   double violation = 0.0;
-  double slack = infinity;   ///< the smallest that is not tight
-  std::vector<Tight> tight;  ///< apart from places without mass
+  double slack = infinity;  ///< the smallest reduced cost that is more than none
+  long within = 0;          ///< how many are none
 };
 
+/// −v of the columns, +∞ of those without mass: their pairs can carry none.
+std::vector<double> added_with_mass(const Masses& masses, const Vertex& vertex) {
+  std::vector<double> add(vertex.column.size());
+  for (std::size_t j = 0; j < add.size(); ++j) add[j] = masses.demand[j] > 0 ? -vertex.column[j] : infinity;
+  return add;
+}
+
+/// Of pairs of places with mass; the violation of all.
 Look look_at_reduced_costs(const double* cost, const Masses& masses, const Vertex& vertex, double tolerance) {
   Look out;
   const std::size_t rows = vertex.row.size(), columns = vertex.column.size();
-  std::vector<double> no_mass(columns, 0.0);
-  for (std::size_t j = 0; j < columns; ++j) no_mass[j] = masses.demand[j] > 0 ? 0.0 : infinity;
+  const int count = static_cast<int>(columns);
+  std::vector<double> add(columns);
+  for (std::size_t j = 0; j < columns; ++j) add[j] = -vertex.column[j];
+  const std::vector<double> add_with_mass = added_with_mass(masses, vertex);
+  const bool all_have_mass = add == add_with_mass;
   for (std::size_t i = 0; i < rows; ++i) {
     const double* of_row = cost + i * columns;
-    const double without_mass = masses.supply[i] > 0 ? 0.0 : infinity;
-    for (std::size_t j = 0; j < columns; ++j) {
-      const double reduced = of_row[j] - vertex.row[i] - vertex.column[j];
-      out.violation = -reduced > out.violation ? -reduced : out.violation;
-      const double with_mass = reduced + no_mass[j] + without_mass;
-      if (with_mass > tolerance) {
-        out.slack = with_mass < out.slack ? with_mass : out.slack;
-      } else {
-        out.tight.push_back({static_cast<int>(i), static_cast<int>(j), with_mass});
-      }
+    const bool has_mass = masses.supply[i] > 0;
+    if (!has_mass || !all_have_mass) {
+      out.violation = std::max(out.violation, vertex.row[i] - row_minimum(of_row, add.data(), count).value);
     }
+    if (!has_mass) continue;
+    const RowLook look = look_at_row(of_row, add_with_mass.data(), vertex.row[i], tolerance, count);
+    out.violation = std::max(out.violation, -look.least);
+    out.slack = std::min(out.slack, look.slack);
+    out.within += look.within;
   }
   return out;
 }
 
-void judge_uniqueness(const Look& look, const Vertex& vertex, TransportAnswer& out) {
-  const int rows = static_cast<int>(vertex.row.size()), columns = static_cast<int>(vertex.column.size());
-  const auto nodes = static_cast<std::size_t>(rows + columns);
-  Sets with_mass(nodes), tree(nodes);
-  for (const Arc& arc : vertex.plan) {
-    with_mass.join(arc.row, rows + arc.column);
-    tree.join(arc.row, rows + arc.column);
+/// Visits the pairs of places with mass that have no reduced cost and are no arcs with mass themselves, until `visit`
+/// says false.
+template <class Visit>
+void for_each_idle_tight_arc(const double* cost, const Masses& masses, const Vertex& vertex, double tolerance,
+                             const Visit& visit) {
+  std::vector<Link> with_mass;
+  for (const Arc& arc : vertex.basis) {
+    if (arc.mass > masses.noise) with_mass.emplace_back(arc.row, arc.column);
   }
-  std::vector<std::pair<int, int>> of_plan;
-  for (const Arc& arc : vertex.plan) of_plan.emplace_back(arc.row, arc.column);
-  std::sort(of_plan.begin(), of_plan.end());
-  std::vector<std::pair<int, int>> between;
-  out.slack = look.slack;
-  for (const Tight& arc : look.tight) {
-    if (std::binary_search(of_plan.begin(), of_plan.end(), std::pair(arc.row, arc.column))) continue;
-    if (!tree.join(arc.row, rows + arc.column)) out.slack = std::min(out.slack, std::max(arc.reduced_cost, 0.0));
-    const int from = with_mass.of(arc.row), to = with_mass.of(rows + arc.column);
-    if (from == to) out.multiple = true;
-    between.emplace_back(from, to);
+  std::sort(with_mass.begin(), with_mass.end());
+  const std::vector<double> add = added_with_mass(masses, vertex);
+  const std::size_t columns = vertex.column.size();
+  auto next = with_mass.begin();
+  for (std::size_t i = 0; i < vertex.row.size(); ++i) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      const Link arc(static_cast<int>(i), static_cast<int>(j));
+      const double reduced = cost[i * columns + j] + add[j] - vertex.row[i];
+      if (next != with_mass.end() && *next == arc) {
+        ++next;
+      } else if (masses.supply[i] > 0 && reduced <= tolerance && !visit(arc, reduced)) {
+        return;
+      }
+    }
   }
+}
+
+bool is_tight(const Arc& arc, const double* cost, const Vertex& vertex, double tolerance) {
+  const auto i = static_cast<std::size_t>(arc.row), j = static_cast<std::size_t>(arc.column);
+  return cost[i * vertex.column.size() + j] - vertex.row[i] - vertex.column[j] <= tolerance;
+}
+
+/// Whether arcs without reduced cost are those of the basis and no others. They then form no cycle in any direction.
+bool only_basis_is_tight(const double* cost, const Look& look, const Vertex& vertex, double tolerance) {
+  return look.within == static_cast<long>(vertex.basis.size()) &&
+         std::all_of(vertex.basis.begin(), vertex.basis.end(),
+                     [&](const Arc& arc) { return is_tight(arc, cost, vertex, tolerance); });
+}
+
+void judge_uniqueness(const double* cost, const Masses& masses, const Look& look, const Vertex& vertex,
+                      double tolerance, TransportAnswer& out) {
   out.uniqueness_known = true;
-  out.multiple = out.multiple || has_cycle(std::move(between), nodes);
+  out.multiple = false;
+  out.slack = look.slack;
+  if (only_basis_is_tight(cost, look, vertex, tolerance)) return;
+  const std::size_t columns = vertex.column.size();
+  const int first_column = static_cast<int>(vertex.row.size());
+  Sets tree(vertex.row.size() + columns);
+  for (const Arc& arc : vertex.basis) {
+    if (arc.mass > masses.noise) tree.join(arc.row, first_column + arc.column);
+  }
+  Sets with_mass = tree;
+  const std::size_t nodes = vertex.row.size() + columns;
+  std::vector<Link> between;
+  std::size_t enough = 8 * nodes;  // ties may be many, and a few of them tell
+  for_each_idle_tight_arc(cost, masses, vertex, tolerance, [&](const Link& arc, double reduced) {
+    const int column = first_column + arc.second;
+    between.emplace_back(with_mass.of(arc.first), with_mass.of(column));
+    out.multiple = between.back().first == between.back().second;
+    if (!tree.join(arc.first, column)) out.slack = std::min(out.slack, std::max(reduced, 0.0));
+    if (between.size() < enough) return !out.multiple;
+    enough *= 2;
+    out.multiple = out.multiple || has_cycle(between, nodes);
+    return !out.multiple;
+  });
+  out.multiple = out.multiple || has_cycle(between, nodes);
+  if (out.multiple) out.slack = 0.0;
 }
 
 std::string number(double value) {
@@ -156,8 +199,12 @@ std::string number(double value) {
 void write_answer(const TransportProblem& problem, const double* cost, const Masses& masses, const Vertex& vertex,
                   TransportAnswer& out) {
   const std::size_t columns = vertex.column.size();
+  out.plan.row.reserve(vertex.basis.size());
+  out.plan.column.reserve(vertex.basis.size());
+  out.plan.value.reserve(vertex.basis.size());
   double largest_used = 0.0;
-  for (const Arc& arc : vertex.plan) {
+  for (const Arc& arc : vertex.basis) {
+    if (arc.mass <= masses.noise) continue;
     const double mass = static_cast<double>(arc.mass) * masses.quantum;
     const double of_arc = cost[static_cast<std::size_t>(arc.row) * columns + static_cast<std::size_t>(arc.column)];
     out.plan.row.push_back(arc.row);
@@ -178,14 +225,15 @@ void write_answer(const TransportProblem& problem, const double* cost, const Mas
   out.weight_gradient_b = out.dual_b;
 
   TransportCertificate& certificate = out.certificate;
-  certificate.cost_scale = std::max(largest_used, largest_cost(cost, vertex.row.size() * columns, vertex.barrier));
-  const Look look = look_at_reduced_costs(cost, masses, vertex, tight * certificate.cost_scale);
+  certificate.cost_scale = std::max(largest_used, largest_below(cost, vertex.row.size() * columns, vertex.barrier));
+  const double tolerance = none * certificate.cost_scale;
+  const Look look = look_at_reduced_costs(cost, masses, vertex, tolerance);
   certificate.marginal_a = largest_error(problem.weight_a, out.plan.row, out.plan.value);
   certificate.marginal_b = largest_error(problem.weight_b, out.plan.column, out.plan.value);
   certificate.dual_violation = look.violation;
   certificate.gap = out.gap = out.value - of_a - of_b;
   out.certified = true;
-  judge_uniqueness(look, vertex, out);
+  judge_uniqueness(cost, masses, look, vertex, tolerance, out);
 }
 
 void refuse_forbidden(const std::vector<Arc>& plan, const double* cost, const Masses& masses) {

@@ -10,7 +10,7 @@ namespace bowstring::simplex {
 
 /// What a simplex method found: a vertex of the plans, and potentials.
 struct Vertex {
-  std::vector<Arc> plan;            ///< arcs with mass, which form no cycle
+  std::vector<Arc> basis;           ///< arcs that form no cycle, all those with mass among them
   std::vector<double> row, column;  ///< potentials, one per place
   double barrier;                   ///< costs from here on are out of all proportion and not in the plan; else +∞
 };

@@ -8,7 +8,6 @@
 
 #include "losses/transport/network-simplex/barred_cost.hpp"
 #include "losses/transport/network-simplex/pricing.hpp"
-#include "losses/transport/network-simplex/row_minimum.hpp"
 #include "losses/transport/network-simplex/start.hpp"
 
 namespace bowstring::simplex {
@@ -59,8 +58,10 @@ std::vector<double> column_reduction(const std::vector<int>& rows, const double*
 }  // namespace
 
 void NetworkSimplex::set_masses(Masses masses) {
-  const bool kept = !tree_.empty() && same_places(masses.supply, masses_.supply) &&
-                    same_places(masses.demand, masses_.demand) && tree_.carry(masses.supply, masses.demand);
+  const bool same = masses.supply == masses_.supply && masses.demand == masses_.demand;
+  const bool kept =
+      has_tree() && (same || (same_places(masses.supply, masses_.supply) &&
+                              same_places(masses.demand, masses_.demand) && tree_.carry(masses.supply, masses.demand)));
   masses_ = std::move(masses);
   if (kept) return;
   tree_.clear();
@@ -80,11 +81,13 @@ template <class Prices>
 void NetworkSimplex::pivot_to_optimum(Prices& prices) {
   // A row is a block of a size that suits; short ones are taken together.
   const std::size_t columns = masses_.demand.size(), block = std::min(1 + 64 / columns, order_.size());
-  // Potentials that are moved gather rounding: they are computed anew now and then, and to check the end.
-  constexpr long moves = 256;
-  for (long before = -1; before != pivots_;) {
-    prices.compute(tree_);
-    before = pivots_;
+  // Potentials that are moved gather rounding, and what pays has to exceed that of the largest one since they were
+  // computed. So they are computed anew now and then, and the end is looked at once more after many moves, or where the
+  // largest one has become much smaller.
+  constexpr long moves = 128, few = 32;
+  prices.compute(tree_);
+  for (bool again = true; again;) {
+    const long before = pivots_;
     std::size_t at = 0, without = 0;
     while (without < order_.size()) {
       Candidate best;
@@ -98,6 +101,10 @@ void NetworkSimplex::pivot_to_optimum(Prices& prices) {
       prices.move(tree_, tree_.exchange(best.row, best.column), best);
       if ((++pivots_ - before) % moves == 0) prices.compute(tree_);
     }
+    if (pivots_ == before) break;
+    const double largest = prices.largest();
+    prices.compute(tree_);
+    again = pivots_ - before > few || prices.largest() < 0.5 * largest;
   }
   prices.hand_over(row_potential_, column_potential_);
 }
@@ -136,7 +143,7 @@ bool NetworkSimplex::solve_barred(const double* cost, double barrier) {
 bool NetworkSimplex::solve(const double* cost) {
   pivots_ = 0;
   barrier_ = infinity;
-  if (tree_.empty()) start(cost);
+  if (!has_tree()) start(cost);
   const bool plain = !tree_has(cost, infinity, false);
   if (plain) solve_plain(cost);
   if (!plain || drowned(cost)) {
@@ -154,21 +161,24 @@ bool NetworkSimplex::solve(const double* cost) {
 
 void NetworkSimplex::price_places_without_mass(const double* cost) {
   const std::size_t rows = masses_.supply.size(), columns = masses_.demand.size();
+  const auto room = [&](std::size_t i, std::size_t j, double potential) {
+    const double of_pair = cost[i * columns + j];
+    return of_pair < barrier_ ? of_pair - potential : infinity;
+  };
   for (std::size_t j = 0; j < columns; ++j) {
     if (masses_.demand[j] > 0) continue;
     double least = infinity;
     for (const int row : order_) {
       const auto i = static_cast<std::size_t>(row);
-      least = std::min(least, cost[i * columns + j] - row_potential_[i]);
+      least = std::min(least, room(i, j, row_potential_[i]));
     }
     column_potential_[j] = std::isinf(least) ? 0.0 : least;
   }
-  std::vector<double> negated(column_potential_);
-  for (double& value : negated) value = -value;
   for (std::size_t i = 0; i < rows; ++i) {
     if (masses_.supply[i] > 0) continue;
-    const Minimum least = row_minimum(cost + i * columns, negated.data(), static_cast<int>(columns));
-    row_potential_[i] = least.index < 0 ? 0.0 : least.value;
+    double least = infinity;
+    for (std::size_t j = 0; j < columns; ++j) least = std::min(least, room(i, j, column_potential_[j]));
+    row_potential_[i] = std::isinf(least) ? 0.0 : least;
   }
 }
 

@@ -34,8 +34,10 @@ class NetworkSimplex {
 
   /// Arcs with more mass than noise, by node.
   std::vector<Arc> plan() const { return tree_.arcs(masses_.noise); }
-  /// Potentials: row[i] + column[j] ≤ cost[i][j], equal on the plan. Places without mass have the largest ones; 0 where
-  /// all their pairs are forbidden.
+  /// Arcs of the tree.
+  std::vector<Arc> basis() const { return tree_.arcs(-1); }
+  /// Potentials: row[i] + column[j] ≤ cost[i][j], equal on the plan. Places without mass have the largest ones that
+  /// their pairs below the barrier allow; 0 where there are no such pairs.
   const std::vector<double>& row_potential() const noexcept { return row_potential_; }
   const std::vector<double>& column_potential() const noexcept { return column_potential_; }
   /// Costs from here on were found to be out of all proportion to those that the plan uses; else +∞.

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include "losses/transport/network-simplex/row_minimum.hpp"
+#include "losses/transport/network-simplex/row_kernels.hpp"
 
 namespace bowstring::simplex {
 namespace {
 
 /// What rounding may amount to in a reduced cost, relative to the largest potential: it has gathered over some pivots.
-constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double rounding = 32.0 * std::numeric_limits<double>::epsilon();
 
 /// Of a column outside the tree, more often than any arc of it is barred.
 constexpr long never = 1L << 40;
@@ -46,7 +46,8 @@ void Pricing::offer(int row, Candidate& best) const noexcept {
   const double above = potential_[static_cast<std::size_t>(row)];
   const Minimum least = row_minimum(cost, columns, columns_);
   const double reduced = least.value - above;
-  if (reduced < best.reduced_cost && reduced < -rounding * largest_) best = {row, least.index, 0, reduced};
+  if (!(reduced < best.reduced_cost && reduced < -rounding * largest_)) return;
+  best = {row, place_of(least, cost, columns), 0, reduced};
 }
 
 void Pricing::move(const SpanningTree& tree, const SpanningTree::Part& part, const Candidate& entered) noexcept {

@@ -25,6 +25,8 @@ class Pricing {
   Pricing(const double* cost, int rows, int columns);
 
   void compute(const SpanningTree& tree);
+  /// The largest |potential| since then.
+  double largest() const noexcept { return largest_; }
   /// Takes the row's best arc for `best` where it pays more.
   void offer(int row, Candidate& best) const noexcept;
   /// `entered` has come in and parted the tree.
@@ -35,7 +37,7 @@ class Pricing {
  private:
   const double* cost_;
   int rows_, columns_;
-  double largest_ = 0.0;  // |potential| since `compute`
+  double largest_ = 0.0;
   std::vector<double> potential_;
 };
 
@@ -45,6 +47,7 @@ class BarredPricing {
   BarredPricing(const double* cost, int rows, int columns, double barrier);
 
   void compute(const SpanningTree& tree);
+  double largest() const noexcept { return largest_; }
   void offer(int row, Candidate& best) const noexcept;
   void move(const SpanningTree& tree, const SpanningTree::Part& part, const Candidate& entered) noexcept;
   /// Of an optimum without mass on barred arcs, as plain numbers.

@@ -1,5 +1,6 @@
 #include "losses/transport/network-simplex/spanning_tree.hpp"
 
+#include <limits>
 #include <utility>
 
 namespace bowstring::simplex {

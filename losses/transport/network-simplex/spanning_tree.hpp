@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace bowstring::simplex {
@@ -30,8 +29,6 @@ class SpanningTree {
   std::int64_t mass_to_parent(int node) const noexcept { return nodes_[static_cast<std::size_t>(node)].mass; }
   /// The node after this one where parents come before their children; after the last one the root.
   int next(int node) const noexcept { return next_[static_cast<std::size_t>(node)]; }
-  /// Nodes of the tree: those that `build` got an arc for.
-  int size() const noexcept { return size_; }
 
   /// The arcs have to span the nodes that they touch, and to be strongly feasible from `root`.
   void build(int rows, int columns, int root, const std::vector<Arc>& arcs);
@@ -81,7 +78,8 @@ class SpanningTree {
   int reroot(int top, int node, std::int64_t entering_mass) noexcept;
   void hang(int node, int tail, int parent) noexcept;
 
-  int rows_ = 0, root_ = 0, size_ = 0;
+  int rows_ = 0, root_ = 0;
+  int size_ = 0;  // nodes that have an arc
   std::vector<Node> nodes_;
   std::vector<int> next_, previous_, last_;  // a circular list, parents first; the last node of each subtree
 };

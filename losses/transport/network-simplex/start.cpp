@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "losses/transport/network-simplex/row_minimum.hpp"
+#include "losses/transport/network-simplex/row_kernels.hpp"
 
 namespace bowstring::simplex {
 namespace {
@@ -74,8 +74,10 @@ std::vector<Arc> cheapest_start(const Masses& masses, const std::vector<int>& ro
   for (const int row : rows) {
     while (!left.row_done(row)) {
       const double* costs = cost + static_cast<std::size_t>(row) * columns;
-      int column = row_minimum(costs, open.data(), static_cast<int>(columns)).index;
-      if (column < 0) column = static_cast<int>(std::find(closed.begin(), closed.end(), false) - closed.begin());
+      const Minimum least = row_minimum(costs, open.data(), static_cast<int>(columns));
+      const int column = least.value < infinity
+                             ? place_of(least, costs, open.data())
+                             : static_cast<int>(std::find(closed.begin(), closed.end(), false) - closed.begin());
       if (!left.send(row, column, arcs)) continue;
       open[static_cast<std::size_t>(column)] = infinity;
       closed[static_cast<std::size_t>(column)] = true;

@@ -11,10 +11,11 @@
 namespace bowstring::sinkhorn {
 namespace {
 
-/// The ladder of ε falls by this factor; each rung but the last is left at this error of the marginals.
+/// The ladder of ε falls by this factor; each rung but the last is left at this error of the marginals. A loose one
+/// costs more: Newton's method of the next rung needs potentials that are right to about ε.
 constexpr double rung = 0.25;
-constexpr double rung_tolerance = 1e-2;
-constexpr long rung_iterations = 100;
+constexpr double rung_tolerance = 1e-6;
+constexpr long rung_iterations = 2000;
 
 /// Scalings are absorbed into the potentials beyond this, far from overflow even of a sum of products.
 constexpr double largest_scaling = 1e50;
@@ -31,6 +32,9 @@ double soft_minimum(const Eigen::Ref<const Vector>& x, const Vector& w, double e
   }
   return -largest - epsilon * std::log(sum);
 }
+
+/// Zero below 1e-200: no scaling brings such an entry back, and processors are slow with denormal numbers.
+double exponential(double exponent) { return exponent < -460.0 ? 0.0 : std::exp(exponent); }
 
 bool usable(const Vector& scaling) { return scaling.allFinite() && scaling.minCoeff() > 0.0; }
 
@@ -49,6 +53,10 @@ void refuse_forbidden(const Matrix& cost) {
   }
 }
 
+/// A Newton step changes no exponent by more than this: along a direction in which the plan hardly couples places, the
+/// quadratic model asks for steps without end.
+constexpr double reach = 20.0;
+
 /// Adds `damping` of the diagonal: directions in which the dual is flat below rounding stay where they are.
 constexpr double damping = 1e-13;
 
@@ -61,7 +69,7 @@ EntropicProblem::EntropicProblem(Matrix cost, Vector a, Vector b)
 
 void EntropicProblem::make_kernel() {
   kernel_ = ((-cost_).colwise() + f).rowwise() + g.transpose();
-  kernel_ = (kernel_ / epsilon_).array().exp();
+  kernel_ = (kernel_ / epsilon_).unaryExpr(&exponential);
 }
 
 void EntropicProblem::update_in_logarithms() {
@@ -93,7 +101,8 @@ bool EntropicProblem::newton_step() {
   const Vector step_f = epsilon_ * inverse_row.cwiseProduct(residual_a) - scaled * step_g;
   const Vector from_f = f, from_g = g;
   const double value = dual_value(here);
-  for (double share = 1.0; share > 1e-3; share *= 0.5) {
+  const double longest = std::max(step_f.lpNorm<Eigen::Infinity>(), step_g.lpNorm<Eigen::Infinity>());
+  for (double share = std::min(1.0, reach * epsilon_ / longest), least = 1e-3 * share; share > least; share *= 0.5) {
     f = from_f + share * step_f;
     g = from_g + share * step_g;
     const double next = dual_value(plan());
@@ -169,10 +178,8 @@ void EntropicProblem::solve_symmetric(double epsilon, const Limits& limits) {
 }
 
 Matrix EntropicProblem::plan() const {
-  Matrix out = ((-cost_).colwise() + f).rowwise() + g.transpose();
-  out = (out / epsilon_).array().exp();
-  out = a_.asDiagonal() * out * b_.asDiagonal();
-  return out;
+  const Matrix exponent = (((-cost_).colwise() + f).rowwise() + g.transpose()) / epsilon_;
+  return a_.asDiagonal() * exponent.unaryExpr(&exponential) * b_.asDiagonal();
 }
 
 double EntropicProblem::dual_value(const Matrix& plan) const {

@@ -10,8 +10,9 @@
 namespace bowstring::unbalanced {
 namespace {
 
-constexpr double wanted = 1e-15, tolerable = 1e-9;
-constexpr int scalings_first = 20, most_iterations = 500;
+constexpr double wanted = 1e-28, good = 1e-14, tolerable = 1e-9;  // the gap is a square of what is off in the duals
+constexpr double cooling = 0.25;                                  // from one ε to the next
+constexpr int most_iterations = 60;
 
 class Entropic {
  public:
@@ -25,30 +26,46 @@ class Entropic {
         v_(Vector::Zero(problem.b.size())) {}
 
   Iterate run() {
-    const double scale = rho_ * (a_.sum() + b_.sum());
+    const double wanted_epsilon = epsilon_;
+    for (epsilon_ = std::max(wanted_epsilon, cost_.min(rho_).mean()); epsilon_ > wanted_epsilon;
+         epsilon_ = std::max(wanted_epsilon, cooling * epsilon_)) {
+      approach();
+    }
+    return finish();
+  }
+
+ private:
+  /// Near enough to the solution of this ε for the next one to start from.
+  void approach() {
+    scale_both();
+    for (int k = 0; k < most_iterations && newton() > 0.5; ++k) scale_both();
+  }
+
+  Iterate finish() {
+    const double mass = a_.sum() + b_.sum(), scale = cost_scale(cost_, rho_) * mass;
     Iterate best;
     double least = HUGE_VAL;
-    int since_best = 0;
-    for (long k = 0; k < most_iterations && since_best < 20; ++k) {
-      if (k < scalings_first || damped_) scale_both();
-      if (k >= scalings_first) newton();
+    bool near = false;
+    for (int k = 0, since_best = 0; k < most_iterations && since_best < (least <= good * scale ? 2 : 8); ++k) {
+      if (!near) scale_both();
+      near = newton() < 0.5;
       const double gap = measure();
       since_best = gap < 0.9 * least ? 0 : since_best + 1;
       if (gap < least) {
         least = gap;
-        best = {u_, v_, plan_, k + 1, 0};
+        best = {u_, v_, plan_, 0, 0};
       }
       if (least <= wanted * scale) break;
     }
-    if (!(least <= tolerable * scale)) {
-      throw StatusError(Code::failed, "scaling ended with a duality gap of " + std::to_string(least / scale) +
+    if (!(least <= tolerable * rho_ * mass)) {
+      throw StatusError(Code::failed, "scaling ended with a duality gap of " + std::to_string(least / (rho_ * mass)) +
                                           " of the marginal weight times the masses; expected 1e-9");
     }
-    best.memory_bytes = static_cast<std::size_t>(4 * plan_.size()) * sizeof(double) + system_.memory_bytes();
+    best.iterations = iterations_;
+    best.memory_bytes = static_cast<std::size_t>(5 * plan_.size()) * sizeof(double) + system_.memory_bytes();
     return best;
   }
 
- private:
   /// −ρε/(ρ + ε) log Σ weight e^{exponent}.
   double scaled(const Eigen::Ref<const Vector>& exponent, const Vector& weight) const {
     const double most = exponent.maxCoeff();
@@ -75,19 +92,32 @@ class Entropic {
                    divergence(plan_.colwise().sum().transpose(), b_ * (-v_ / rho_).exp()));
   }
 
-  void newton() {
+  /// The dual but for constants, negated: a convex function.
+  double loss(const Vector& u, const Vector& v) const {
+    return rho_ * ((a_ * (-u / rho_).exp()).sum() + (b_ * (-v / rho_).exp()).sum()) + epsilon_ * plan_of(u, v).sum();
+  }
+
+  /// One step; how much it would have changed the exponents of the plan's entries that matter, and of the sums.
+  double newton() {
+    ++iterations_;
     plan_ = plan_of(u_, v_);
     const Vector of_a = a_ * (-u_ / rho_).exp(), of_b = b_ * (-v_ / rho_).exp();
+    const Vector right_a = of_a - plan_.rowwise().sum(), right_b = of_b - plan_.colwise().sum().transpose();
     system_.factor(plan_ / epsilon_, of_a / rho_, of_b / rho_);
     Vector u, v;
-    system_.solve(of_a - plan_.rowwise().sum(), of_b - plan_.colwise().sum().transpose(), u, v);
-    // What stands in the exponents moves by two at most.
-    const double in_plan = ((u.replicate(1, v.size())).rowwise() + v.transpose()).abs().maxCoeff() / epsilon_;
+    system_.solve(right_a, right_b, u, v);
+    const Matrix change = (u.replicate(1, v.size()).rowwise() + v.transpose()).abs() / epsilon_;
+    const double in_plan = std::sqrt((plan_ * change.square()).sum() / plan_.sum());
     const double in_sums = std::max(u.abs().maxCoeff(), v.abs().maxCoeff()) / rho_;
-    const double length = std::min(1.0, 2.0 / std::max({in_plan, in_sums, 1.0}));
-    damped_ = length < 1.0;
-    u_ += length * u;
-    v_ += length * v;
+    const double slope = (right_a * u).sum() + (right_b * v).sum(), before = loss(u_, v_);
+    double length = 1.0;
+    for (int halving = 0; halving < 40; ++halving, length *= 0.5) {
+      const double after = loss(u_ + length * u, v_ + length * v);
+      if (after <= before - 1e-4 * length * slope + 1e-14 * std::fabs(before)) break;
+    }
+    u_ = (u_ + length * u).min(far * rho_);
+    v_ = (v_ + length * v).min(far * rho_);
+    return length < 1.0 ? std::max(1.0, in_plan) : std::max(in_plan, in_sums);
   }
 
   Vector a_, b_;
@@ -95,7 +125,7 @@ class Entropic {
   Matrix cost_;
   Vector u_, v_;
   Matrix plan_;
-  bool damped_ = false;
+  long iterations_ = 0;
   DominantSystem system_;
 };
 

@@ -10,7 +10,7 @@
 namespace bowstring::unbalanced {
 namespace {
 
-constexpr double wanted = 1e-15, tolerable = 1e-9;
+constexpr double wanted = 1e-18, good = 1e-14, tolerable = 1e-9;
 constexpr int most_iterations = 300;
 
 struct Step {
@@ -21,6 +21,11 @@ struct Step {
 /// The longest step, up to one, that leaves x + step dx ≥ 0.
 double longest(const Matrix& x, const Matrix& dx) { return 1.0 / std::max(1.0, (-dx / x).maxCoeff()); }
 
+double logarithmic_mean(double x, double y) {
+  const double t = (y - x) / x;
+  return std::fabs(t) < 1e-4 ? x * (1.0 + 0.5 * t) : (y - x) / std::log(y / x);
+}
+
 class InteriorPoint {
  public:
   explicit InteriorPoint(const Problem& problem)
@@ -28,12 +33,11 @@ class InteriorPoint {
 
   Iterate run() {
     start();
-    const double cost_scale = cost_.maxCoeff() > 0.0 ? std::min(rho_, cost_.maxCoeff()) : rho_;
-    const double scale = cost_scale * (a_.sum() + b_.sum());
+    const double scale = cost_scale(cost_, rho_) * (a_.sum() + b_.sum());
     Iterate best;
     double least = HUGE_VAL;
     int since_best = 0;
-    for (long k = 0; k < most_iterations && since_best < 8; ++k) {
+    for (long k = 0; k < most_iterations && since_best < (least <= good * scale ? 2 : 8); ++k) {
       measure();
       if (!std::isfinite(gap_)) break;
       since_best = gap_ < 0.9 * least ? 0 : since_best + 1;
@@ -74,8 +78,9 @@ class InteriorPoint {
   void measure() {
     of_a_ = a_ * (-u_ / rho_).exp();
     of_b_ = b_ * (-v_ / rho_).exp();
-    const Vector sum_a = plan_.rowwise().sum(), sum_b = plan_.colwise().sum().transpose();
-    penalty_gap_ = rho_ * (divergence(sum_a, of_a_) + divergence(sum_b, of_b_));
+    sum_a_ = plan_.rowwise().sum();
+    sum_b_ = plan_.colwise().sum().transpose();
+    penalty_gap_ = rho_ * (divergence(sum_a_, of_a_) + divergence(sum_b_, of_b_));
     product_ = (plan_ * slack_).sum();
     gap_ = product_ + penalty_gap_;
   }
@@ -90,15 +95,22 @@ class InteriorPoint {
     return out;
   }
 
-  /// Marginals are exponentials: a long step down in u or v multiplies them by what no linearisation has seen.
+  /// The slope of a e^{−u/ρ} between where it is and where it is the plan's sum: their logarithmic mean over ρ. The
+  /// derivative alone would send a u whose exponential has all but vanished beyond all bounds.
+  Vector excess(const Vector& of, const Vector& sum) const {
+    return of.binaryExpr(sum, [](double x, double y) { return logarithmic_mean(x, y); }) / rho_;
+  }
+
+  /// Up to one, so that no a e^{−u/ρ} grows beyond e³ times what it and the plan's sum are.
   double trust(const Step& step) const {
-    const double down = -std::min(step.u.minCoeff(), step.v.minCoeff());
-    return down > 3.0 * rho_ ? 3.0 * rho_ / down : 1.0;
+    const double most_a = (-step.u / (rho_ * (3.0 + (sum_a_ / of_a_).max(1.0).log()))).maxCoeff();
+    const double most_b = (-step.v / (rho_ * (3.0 + (sum_b_ / of_b_).max(1.0).log()))).maxCoeff();
+    return 1.0 / std::max({1.0, most_a, most_b});
   }
 
   void advance() {
     const double count = static_cast<double>(plan_.size()), mean = product_ / count;
-    system_.factor(plan_ / slack_, of_a_ / rho_, of_b_ / rho_);
+    system_.factor(plan_ / slack_, excess(of_a_, sum_a_), excess(of_b_, sum_b_));
     const Step predictor = step(Matrix::Zero(plan_.rows(), plan_.cols()));
     const double length =
         std::min({longest(slack_, predictor.slack), longest(plan_, predictor.plan), trust(predictor)});
@@ -120,13 +132,19 @@ class InteriorPoint {
   double rho_;
   Matrix cost_;
   Vector u_, v_;
-  Matrix slack_, plan_;  // a slack by its own steps, which keeps its digits when it is small beside costs
-  Vector of_a_, of_b_;   // a e^{−u/ρ}, b e^{−v/ρ}
+  Matrix slack_, plan_;   // a slack by its own steps, which keeps its digits when it is small beside costs
+  Vector sum_a_, sum_b_;  // of the plan
+  Vector of_a_, of_b_;    // a e^{−u/ρ}, b e^{−v/ρ}
   double gap_ = 0.0, product_ = 0.0, penalty_gap_ = 0.0;
   DominantSystem system_;
 };
 
 }  // namespace
+
+double cost_scale(const Matrix& cost, double weight) {
+  const double largest = cost.min(far * weight).abs().maxCoeff();
+  return largest > 0.0 ? std::min(weight, largest) : weight;
+}
 
 Iterate solve_by_interior_point(const Problem& problem) { return InteriorPoint(problem).run(); }
 

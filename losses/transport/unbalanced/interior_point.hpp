@@ -26,12 +26,15 @@ struct Iterate {
 /// e^{−40} of a mass is beyond doubles.
 inline constexpr double far = 80.0;
 
+/// What a unit of mass may cost or forgo: ρ, or the largest cost where that is less and not zero.
+double cost_scale(const Matrix& cost, double weight);
+
 /// Of ε = 0, by a primal-dual interior-point method with a predictor and a corrector (S. Mehrotra, SIAM J. Optim. 2
 /// (1992) 575) on
 ///   a_i e^{−u_i/ρ} = Σ_j γ_ij,   b_j e^{−v_j/ρ} = Σ_i γ_ij,   s_ij = c_ij − u_i − v_j > 0,   γ_ij s_ij = μ → 0.
 /// The plan has no sums to keep and u, v none but s > 0, so that each iterate bounds the optimum from both sides, by
 ///   Σ γ s + ρ Σ (γ1 log(γ1/a e^{−u/ρ}) − γ1 + a e^{−u/ρ}) + the same of b.
-/// It ends where this is 1e-15 of the masses times the largest cost (or ρ, where that is less) or gets no better.
+/// It ends where this is 1e-18 of the masses times `cost_scale` or gets no better.
 /// Rows ≤ columns. Throws a StatusError (`failed`) where that bound stays above 1e-9 of it.
 Iterate solve_by_interior_point(const Problem& problem);
 

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <string>
 
@@ -46,7 +47,8 @@ TEST_CASE("huge entries among many, where they can be gone around") {
   for (const std::string& method : exact_methods()) {
     for (int repeat = 0; repeat < 50; ++repeat) {
       const int count = 2 + below(random, 12);
-      const std::vector<double> weight = uniform_weights(static_cast<std::size_t>(count));
+      std::vector<double> weight = uniform_weights(static_cast<std::size_t>(count));
+      for (std::size_t k = 1; repeat % 2 == 1 && k < weight.size(); k += 2) weight[k] = 0.0;
       MatrixProblem plain{weight, weight, squared_distances(random_cloud(random, count), random_cloud(random, count))};
       MatrixProblem huge = plain, forbidden = plain;
       for (int i = 0; i < count; ++i) {
@@ -81,6 +83,39 @@ TEST_CASE("a plan that has to cross forbidden pairs is refused, with how much ma
     REQUIRE(solve_into(comparison, {{1.0}, {1.0}, {3.0}}, answer).ok());
     CHECK(answer.value == 3.0);
   }
+}
+
+TEST_CASE("refused are the problems whose plans cannot do without forbidden pairs, and no others") {
+  std::mt19937 random(16);
+  int refused = 0, solved = 0;
+  for (int repeat = 0; repeat < 300; ++repeat) {
+    const int rows = 1 + below(random, 7), columns = 1 + below(random, 7);
+    MatrixProblem problem{
+        uniform_weights(static_cast<std::size_t>(rows)), uniform_weights(static_cast<std::size_t>(columns)), {}};
+    MatrixProblem crossings = problem;  // its value is the least mass on forbidden pairs
+    for (int k = 0; k < rows * columns; ++k) {
+      const bool forbid = below(random, 2) == 0;
+      problem.cost.push_back(forbid ? infinity : uniform(random));
+      crossings.cost.push_back(forbid ? 1.0 : 0.0);
+    }
+    for (const std::string& method : exact_methods()) {
+      const double least = solve_cold(method, crossings).value;
+      TransportComparison comparison = open_comparison(method);
+      TransportAnswer answer;
+      const Status status = solve_into(comparison, problem, answer);
+      CHECK(status.ok() == (least < 1e-12));
+      (status.ok() ? solved : refused) += 1;
+      if (status.ok()) {
+        check_proof(problem, answer);
+      } else {
+        char text[64];
+        std::snprintf(text, sizeof text, "at least %.6g would", least);
+        CHECK(status.text.find(text) != std::string::npos);
+      }
+    }
+  }
+  CHECK(refused > 50);
+  CHECK(solved > 50);
 }
 
 TEST_CASE("what rounding of weights leaves over crosses no forbidden pair") {

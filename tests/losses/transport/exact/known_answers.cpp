@@ -53,6 +53,7 @@ TEST_CASE("a translation costs the square of its length, whatever moves") {
       // Coordinates of 30 mm are rounded to 4e-15 mm.
       CHECK(std::fabs(result.answer.value - length * length) <= 1e-12 * length * length + 1e-14 * length);
       CHECK(result.answer.plan.value.size() == 40);
+      check_proof({a.weight, b.weight, squared_distances(a.position, b.position)}, result.answer);
     }
   }
 }

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/transport/transport_comparison.hpp"
+
+namespace transport_test {
+
+using namespace bowstring;
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// A number as settings take it, to the last bit.
+std::string text(double value);
+
+TransportComparison open_transport(const std::string& method, const Settings& settings);
+/// Everything that is wrong with them.
+std::string refusal_of(const std::string& method, const Settings& settings);
+
+/// The answer of a comparison, which has to succeed.
+TransportResult compare(TransportComparison& transport, const Measure& a, const Measure& b);
+TransportAnswer compare(TransportComparison& transport, const std::vector<double>& a, const std::vector<double>& b,
+                        const std::vector<double>& cost);
+
+/// A number of (0, 1), the same with every library.
+double uniform(std::mt19937& random);
+std::vector<double> random_numbers(std::mt19937& random, std::size_t count, double low, double high);
+/// Points of a cube of edge 1 mm; weights of [0.5, 1.5].
+Measure random_cloud(std::mt19937& random, std::size_t count);
+/// The same points with orientations, of any kind.
+Measure with_frames(std::mt19937& random, Measure points);
+
+/// Σ of squares.
+double squared_norm(const std::vector<double>& values);
+
+/// That the derivatives by positions are those of differences, relative to their norms, which have to be above zero.
+void check_place_gradients(TransportComparison& transport, const Measure& a, const Measure& b, double tolerance);
+/// The same of weights. `together`: a weight grows as another of its measure loses (sums have to stay), else alone.
+void check_weight_gradients(TransportComparison& transport, const Measure& a, const Measure& b, bool together,
+                            double tolerance);
+
+}  // namespace transport_test
