@@ -10,7 +10,7 @@ namespace {
 
 constexpr double wanted = 1e-28, good = 1e-14;  // the gap is a square of what is off in the duals
 constexpr double cooling = 0.25;                // from one ε to the next
-constexpr int most_iterations = 60;
+constexpr int most_iterations = 200;
 
 class Entropic {
  public:
@@ -44,7 +44,7 @@ class Entropic {
     Iterate best;
     double least = HUGE_VAL;
     bool near = false;
-    for (int k = 0, since_best = 0; k < most_iterations && since_best < (least <= good * scale ? 2 : 8); ++k) {
+    for (int k = 0, since_best = 0; k < most_iterations && since_best < (least <= good * rho_ * mass ? 2 : 30); ++k) {
       if (!near) scale_both();
       near = newton() < 0.5;
       const double gap = measure();
