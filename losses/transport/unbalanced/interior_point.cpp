@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <cstdio>
 
 #include "losses/transport/unbalanced/divergence.hpp"
 #include "plugins/sdk/guard.hpp"
@@ -10,7 +10,7 @@
 namespace bowstring::unbalanced {
 namespace {
 
-constexpr double wanted = 1e-18, good = 1e-14, tolerable = 1e-9;
+constexpr double wanted = 1e-18, good = 1e-14;
 constexpr int most_iterations = 300;
 
 struct Step {
@@ -48,10 +48,7 @@ class InteriorPoint {
       if (least <= wanted * scale) break;
       advance();
     }
-    if (!(least <= tolerable * scale)) {
-      throw StatusError(Code::failed, "the interior-point method ended with a duality gap of " +
-                                          std::to_string(least / scale) + " of the masses' costs; expected 1e-9");
-    }
+    require_gap("the interior-point method", least / scale);
     best.memory_bytes = static_cast<std::size_t>(12 * plan_.size()) * sizeof(double) + system_.memory_bytes();
     return best;
   }
@@ -144,6 +141,15 @@ class InteriorPoint {
 double cost_scale(const Matrix& cost, double weight) {
   const double largest = cost.min(far * weight).abs().maxCoeff();
   return largest > 0.0 ? std::min(weight, largest) : weight;
+}
+
+void require_gap(const char* method, double gap) {
+  constexpr double tolerable = 1e-9;
+  if (gap <= tolerable) return;
+  char text[160];
+  std::snprintf(text, sizeof text, "%s ended with a duality gap of %.3g of what the masses may cost; expected %g",
+                method, gap, tolerable);
+  throw StatusError(Code::failed, text);
 }
 
 Iterate solve_by_interior_point(const Problem& problem) { return InteriorPoint(problem).run(); }

@@ -29,6 +29,9 @@ inline constexpr double far = 80.0;
 /// What a unit of mass may cost or forgo: ρ, or the largest cost where that is less and not zero.
 double cost_scale(const Matrix& cost, double weight);
 
+/// Throws the StatusError (`failed`) of a method that ended too far from the optimum; `gap` is relative.
+void require_gap(const char* method, double gap);
+
 /// Of ε = 0, by a primal-dual interior-point method with a predictor and a corrector (S. Mehrotra, SIAM J. Optim. 2
 /// (1992) 575) on
 ///   a_i e^{−u_i/ρ} = Σ_j γ_ij,   b_j e^{−v_j/ρ} = Σ_i γ_ij,   s_ij = c_ij − u_i − v_j > 0,   γ_ij s_ij = μ → 0.

@@ -41,7 +41,7 @@ Iterate solve(const Problem& problem) {
 
 /// The largest u that v leaves: min_j c_ij − v_j over columns that may have mass, or where it makes no difference.
 double tight_dual(const Eigen::Ref<const Vector>& cost, const Vector& v, double most) {
-  return std::min((cost - v).minCoeff(), std::max(most, 0.0));
+  return std::min((cost - v).minCoeff(), most);
 }
 
 /// Duals without slack, on costs as they are.
@@ -70,7 +70,7 @@ double gap_without_entropy(const Problem& problem, const Iterate& found) {
 /// is small, both relative to what they could be.
 void leave_out_zeros(const Problem& problem, Iterate& found) {
   const Vector sum_a = found.plan.rowwise().sum(), sum_b = found.plan.colwise().sum().transpose();
-  const double scale = std::min(problem.weight, found.u.abs().maxCoeff() + found.v.abs().maxCoeff());
+  const double scale = cost_scale(problem.cost, problem.weight);
   for (Eigen::Index i = 0; i < found.plan.rows(); ++i) {
     for (Eigen::Index j = 0; j < found.plan.cols(); ++j) {
       const double slack = problem.cost(i, j) - found.u[i] - found.v[j];

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
+#include "core/model/component.hpp"
 #include "problems.hpp"
 
 using namespace transport_test;
@@ -41,7 +43,65 @@ std::vector<double> random_costs(std::mt19937& random, std::size_t count) {
   return out;
 }
 
+/// Costs that are dear, with lower bounds, and that count how many of them were asked for.
+class DearCosts final : public PairCosts {
+ public:
+  DearCosts(std::vector<double> cost, int rows, int columns) : cost_(std::move(cost)), rows_(rows), columns_(columns) {}
+
+  int row_count() const noexcept override { return rows_; }
+  int column_count() const noexcept override { return columns_; }
+  bool dear() const noexcept override { return true; }
+  const double* matrix() const noexcept override { return nullptr; }
+  Status rows(int begin, int end, Span<double> value) noexcept override {
+    evaluated += (end - begin) * columns_;
+    std::copy(cost_.begin() + begin * columns_, cost_.begin() + end * columns_, value.begin());
+    return {};
+  }
+  Status lower_bounds(int begin, int end, Span<double> value) noexcept override {
+    std::transform(cost_.begin() + begin * columns_, cost_.begin() + end * columns_, value.begin(),
+                   [](double cost) { return 0.97 * cost; });
+    return {};
+  }
+  Status evaluate(Span<const int> pairs, Span<double> value) noexcept override {
+    evaluated += static_cast<int>(value.size());
+    for (std::size_t k = 0; k < value.size(); ++k) {
+      value[k] = cost_[static_cast<std::size_t>(pairs[2 * k] * columns_ + pairs[2 * k + 1])];
+    }
+    return {};
+  }
+
+  int evaluated = 0;
+
+ private:
+  std::vector<double> cost_;
+  int rows_, columns_;
+};
+
 }  // namespace
+
+TEST_CASE("of dear costs total variation asks for those that its plan uses, and none beyond twice the weight") {
+  std::mt19937 random(6);
+  const std::vector<double> a = random_numbers(random, 60, 0.5, 1.5), b = random_numbers(random, 50, 0.5, 1.5);
+  const std::vector<double> cost = random_numbers(random, 3000, 0.0, 1.0);
+  for (const double rho : {0.01, 0.2, 1.0}) {
+    TransportComparison transport = unbalanced("total-variation", rho);
+    const TransportAnswer expected = compare(transport, a, b, cost);
+    Status status;
+    Owned<Transport> method = create<Transport>(transport.choice().method, status);
+    REQUIRE(status.ok());
+    DearCosts dear(cost, 60, 50);
+    TransportProblem problem;
+    problem.weight_a = a;
+    problem.weight_b = b;
+    problem.between = &dear;
+    TransportAnswer answer;
+    REQUIRE(method->solve(problem, answer).ok());
+    CHECK(answer.value == doctest::Approx(expected.value).epsilon(1e-13));
+    CHECK(std::fabs(answer.gap) <= 1e-12 * answer.value);
+    CHECK(dear.evaluated >= static_cast<int>(answer.plan.value.size()));
+    CHECK(dear.evaluated < 600);
+  }
+}
 
 TEST_CASE("plan and duals prove each other, of any shape, weights and marginal weight") {
   std::mt19937 random(1);
