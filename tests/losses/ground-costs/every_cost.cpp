@@ -128,7 +128,9 @@ TEST_CASE("Pure forward motion and pure turns are exact, and lateral motion cost
       CHECK(cost(Se3(), {{}, {{-length, 0.0, 0.0}}}) == doctest::Approx(forward).epsilon(1e-11));
       const double lateral = cost(Se3(), {{}, {{0.0, 0.6 * length, 0.8 * length}}});
       CHECK(std::isfinite(lateral));
-      CHECK(lateral > forward);
+      // Both costs of the nilpotent approximation are 4π w₁β l and (w₁l)²: what holds nearby ends at l = 4πβ/w₁.
+      const bool nearby = length < 80.0 * pi;
+      if (nearby || std::string(name) != "se3-nilpotent") CHECK(lateral > forward);
     }
     for (const double angle : {1e-12, 1e-8, 0.1, 1.0, 3.0, pi}) {
       CAPTURE(angle);
@@ -152,7 +154,7 @@ TEST_CASE("A frame turned by half a turn has one cost, whatever the sign of its 
       const Se3 h{{0.0, axis[0], axis[1], axis[2]}, place}, other{{-0.0, -axis[0], -axis[1], -axis[2]}, place};
       const double value = cost(Se3(), h);
       CHECK(value >= 0.999 * pi * pi);
-      CHECK(cost(Se3(), other) == doctest::Approx(value).epsilon(1e-12));
+      CHECK(std::fabs(cost(Se3(), other) - value) < 1e-12 * value);
       // and it is continuous there
       for (const double beside : {-1e-9, 1e-9}) {
         CHECK(cost(Se3(), {lie::exp((pi + beside) * axis), place}) == doctest::Approx(value).epsilon(1e-7));

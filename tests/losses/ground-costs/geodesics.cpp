@@ -127,10 +127,10 @@ TEST_CASE("The far field tells long geodesics up to what falls exponentially, wi
     REQUIRE((forward.exists && backward.exists));
     const double asymptote = std::sqrt(std::min(forward.squared, backward.squared));
     const double found = distance(target, weights);
-    CHECK(found <= asymptote * (1.0 + 1e-9));
+    // Nearly half a turn of roll may go the other way round.
     if (std::fabs(forward.roll) > 2.6 || std::fabs(backward.roll) > 2.6) continue;
     ++compared;
-    CHECK(found == doctest::Approx(asymptote).epsilon(3e-3 * (compliance > 0.0 ? 3.0 : 1.0)));
+    CHECK(std::fabs(found - asymptote) < 60.0 * std::exp(-std::sqrt(1.0 - compliance) * asymptote));
   }
   CHECK(compared > 1);
 }
