@@ -51,6 +51,7 @@ struct Place {
 /// Value of the dual function less s² + |ψ|², derivative, and the three numbers of the NEGATIVE Hessian.
 struct DualFunction {
   double value;
+  double bent;  ///< the part of it that is not linear
   Vector2 gradient;
   double h00, h01, h11;
   PoleSum q;
@@ -59,7 +60,8 @@ struct DualFunction {
     const Vector2& l = at.dual;
     const double a = c.forward_squared + c.bend_squared, b = c.forward_squared;
     const double form = a * l[0] * l[0] + b * l[1] * l[1];
-    value = 2.0 * dot(l, c.lateral) - 0.25 * q.value * form;
+    bent = 0.25 * q.value * form;
+    value = 2.0 * dot(l, c.lateral) - bent;
     const double common = 0.125 * q.first * form;
     gradient = {{2.0 * c.lateral[0] - l[0] * (common + 0.5 * q.value * a),
                  2.0 * c.lateral[1] - l[1] * (common + 0.5 * q.value * b)}};
@@ -98,19 +100,64 @@ Vector2 first_guess(const Canonical& c) noexcept {
   return y;
 }
 
-/// Where λ* tends to (0, 2π) as s → 0, which it does for all πz₁² < z₂|ψ|²: with t = π − τ and λ = 2t(sin ζ, cos ζ) the
-/// leading terms of stationarity are ζ|ψ|² = 2τz₁ and 4z₂τ² = π(s² + |ψ|²ζ²).
+/// Near (0, 2π), where λ* tends to as s → 0 for all πz₁² < z₂|ψ|²: with t = π − τ and λ = 2t(sin ζ, cos ζ) the leading
+/// terms of stationarity are ζ(z₂ + |ψ|²/2τ) = z₁ and 4z₂τ² = π(s² + |ψ|²ζ²), which leave
+///   1 = A/τ² + B/(τ + k)²,   A = πs²/4z₂,   B = π|ψ|²z₁²/4z₂³,   k = |ψ|²/2z₂.
+/// The right side falls and is convex, so that Newton's method goes up to the root from where it is above 1.
 bool guess_near_pole(const Canonical& c, Vector2& y) noexcept {
   const double z0 = c.lateral[0], z1 = c.lateral[1];
-  const double inside = 1.0 - pi * z0 * z0 / (z1 * c.bend_squared);
-  if (!(inside > 1e-3)) return false;
-  const double tau = std::sqrt(0.25 * pi * c.forward_squared / (z1 * inside));
-  if (!(tau < 0.5)) return false;
-  const double zeta = 2.0 * tau * z0 / c.bend_squared;
-  if (!(zeta < 1.0)) return false;
+  if (!(z1 > 0.0)) return false;
+  const double per_lateral = 0.25 * pi / z1, slope = z0 / z1;
+  const double a = per_lateral * c.forward_squared, b = per_lateral * c.bend_squared * slope * slope;
+  const double k = 0.5 * c.bend_squared / z1;
+  double tau = std::max(std::sqrt(a), std::sqrt(b) - k);
+  constexpr double farthest = 0.5;
+  for (int pass = 0; pass < 20 && tau < farthest; ++pass) {
+    const double inner = 1.0 / tau, outer = 1.0 / (tau + k);
+    const double from_inner = a * inner * inner, from_outer = b * outer * outer;
+    const double excess = from_inner + from_outer - 1.0;
+    if (!(excess > 0.02)) break;
+    tau += 0.5 * excess / (from_inner * inner + from_outer * outer);
+  }
+  const double zeta = slope * tau / (tau + k);
+  if (!(tau < farthest) || !(zeta < 1.0)) return false;
   const double radius = (pi - tau) / std::sqrt(tau * (2.0 * pi - tau));
   y = {{radius * zeta, radius}};
   return true;
+}
+
+/// The argument in (low, high) with the largest value of a function that rises and then falls, by golden sections.
+template <class Function>
+double highest(double low, double high, const Function& value_at) {
+  constexpr double golden = 0.61803398874989484820;
+  double left = high - golden * (high - low), right = low + golden * (high - low);
+  double of_left = value_at(left), of_right = value_at(right);
+  for (int pass = 0; pass < 45; ++pass) {
+    if (of_left < of_right) {
+      low = left, left = right, of_left = of_right;
+      right = low + golden * (high - low), of_right = value_at(right);
+    } else {
+      high = right, right = left, of_right = of_left;
+      left = high - golden * (high - low), of_left = value_at(left);
+    }
+  }
+  return 0.5 * (low + high);
+}
+
+/// The maximum by nested search in 2π − λ₂ and λ₁, where a narrow ridge that bends leads Newton's method along it in
+/// small steps: s nearly 0 and πz₁² a little above z₂|ψ|².
+Vector2 nested_search(const Canonical& c) {
+  const auto place = [](double log_gap, double share) -> Vector2 {
+    const double gap = std::exp(log_gap), square = gap * (4.0 * pi - gap);  // 2π − λ₂, 4π² − λ₂²
+    const double scale = 1.0 / std::sqrt(square * (1.0 - share * share));
+    return {{scale * share * std::sqrt(square), scale * (2.0 * pi - gap)}};
+  };
+  const auto best_share = [&](double log_gap) {
+    return highest(0.0, 1.0, [&](double share) { return DualFunction(c, Place(place(log_gap, share))).value; });
+  };
+  const double log_gap = highest(std::log(1e-20), std::log(2.0 * pi),
+                                 [&](double at) { return DualFunction(c, Place(place(at, best_share(at)))).value; });
+  return place(log_gap, best_share(log_gap));
 }
 
 }  // namespace
@@ -140,8 +187,15 @@ NilpotentSolution nilpotent_distance(const NilpotentOffset& offset, double enoug
     const DualFunction there(canonical, other);
     if (there.value > dual.value) at = other, dual = there;
   }
-  const double rounding = 1e-16 * (horizontal + 4.0 * pi * lateral);
-  for (; out.iterations < 60; ++out.iterations) {
+  // Steps that promise less than rounding shows are not judged by values.
+  const double rounding = 2e-15 * (horizontal + 4.0 * pi * lateral);
+  constexpr int most_iterations = 60, patience = 15;
+  for (; out.iterations < most_iterations; ++out.iterations) {
+    if (out.iterations == patience) {
+      const Place searched(nested_search(canonical));
+      const DualFunction there(canonical, searched);
+      if (there.value > dual.value) at = searched, dual = there;
+    }
     if (horizontal + dual.value > enough) {
       out.squared = horizontal + dual.value;
       return out;
@@ -151,11 +205,11 @@ NilpotentSolution nilpotent_distance(const NilpotentOffset& offset, double enoug
                     (dual.h00 * dual.gradient[1] - dual.h01 * dual.gradient[0]) / determinant}};
     const double decrement = 0.5 * dot(newton, dual.gradient);
     const Vector2 in_plane = (newton + dot(at.y, newton) * at.y) / (2.0 * pi * std::sqrt(at.distance_to_pole));
-    const bool last = decrement <= 1e-10 * (horizontal + dual.value);
+    const bool last = decrement <= 1e-9 * dual.bent;
     double share = 1.0;
     Place next(at.y + in_plane);
     DualFunction there(canonical, next);
-    while (there.value < dual.value - rounding && share > 1e-10) {
+    while (decrement > rounding && there.value < dual.value && share > 1e-10) {
       share *= 0.5;
       next = Place(at.y + share * in_plane);
       there = DualFunction(canonical, next);

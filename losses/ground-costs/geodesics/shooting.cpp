@@ -93,9 +93,9 @@ class Shooting {
  public:
   Shooting(const lie::Se3& target, const Weights& weights, std::size_t parts, double size)
       : target_(target), weights_(weights), parts_(parts), residual_(6 * parts) {
-    const double unit = std::min(size, 1.0);
-    twist_unit_ = {{unit, unit, unit, unit, unit * unit, unit * unit}};
-    covector_unit_ = {{unit, unit, unit, unit, 1.0, 1.0}};
+    const double unit = std::min(size, 1.0), lateral = std::max(unit, std::sqrt(weights.lateral_compliance));
+    twist_unit_ = {{unit, unit, unit, unit, unit * lateral, unit * lateral}};
+    covector_unit_ = {{unit, unit, unit, unit, unit / lateral, unit / lateral}};
     if (size > 1.0) covector_unit_ = size * covector_unit_;
   }
 

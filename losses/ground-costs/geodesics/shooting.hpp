@@ -19,7 +19,8 @@ struct Shot {
 /// exp(length), which is why longer geodesics need more parts.
 ///
 /// `guess`: one covector per part, at most `most_parts`. `size`: about the distance; what is shorter than 1 is measured
-/// in the dilation of that size, bends and forward motion as 1, lateral motion as its square.
+/// in the dilation of that size, bends and forward motion as 1, lateral motion as its square, or √κ of it where that is
+/// more.
 Shot shoot(const lie::Se3& target, const std::vector<Covector>& guess, const Weights& weights, double size);
 
 inline constexpr int most_parts = 40;
