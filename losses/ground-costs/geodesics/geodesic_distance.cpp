@@ -63,6 +63,7 @@ class Search {
     rate_ = std::sqrt(std::fabs(c_squared));
     if (c_squared > 0.01) look_far();
     if (!found_far_alone_) look_near();
+    if (weights_.roll_squared > heavy_roll) from_lighter_roll();
     if (!settled()) try_remedies();
     if (!best_.found) best_.failure = "no geodesic was found that reaches it";
     if (best_.found) check();
@@ -84,12 +85,13 @@ class Search {
                     std::to_string(bounds_.upper);
   }
 
-  void keep(double squared, const Covector& start) noexcept {
+  void keep(double squared, const std::vector<Covector>& parts) {
     if (!(squared > 0.0) || (best_.found && squared >= best_.squared)) return;
     if (squared < bounds_.lower * bounds_.lower * (1.0 - 2.0 * tolerance)) return;
     best_.found = true;
     best_.squared = squared;
-    best_.start = start;
+    best_.start = parts[0];
+    best_parts_ = parts;
   }
   Shot attempt(const std::vector<Covector>& guess, const Weights& weights, double size) {
     ++best_.shots;
@@ -97,7 +99,7 @@ class Search {
   }
   bool attempt(const std::vector<Covector>& guess, double size) {
     const Shot shot = attempt(guess, weights_, size);
-    if (shot.converged) keep(shot.squared, shot.parts[0]);
+    if (shot.converged) keep(shot.squared, shot.parts);
     return shot.converged;
   }
   double best() const noexcept { return best_.found ? std::sqrt(best_.squared) : bounds_.upper; }
@@ -131,7 +133,7 @@ class Search {
   }
   void follow(const FarField& field, bool backward) {
     if (field.length * rate_ > 37.0) {
-      keep(field.squared, field.start);
+      keep(field.squared, {field.start});
       return;
     }
     attempt(far_field_guess(target_, weights_, field, backward, parts_of(field.length)), std::sqrt(field.squared));
@@ -199,7 +201,7 @@ class Search {
     const double size = std::sqrt(solution.squared + weights_.roll_squared * twist[0] * twist[0]);
     if (size > 1.3 * best() + 0.1) return;
     const Shot shot = attempt(std::vector<Covector>{nilpotent_covector(twist, solution, weights_)}, weights_, size);
-    if (shot.converged) keep(shot.squared, shot.parts[0]);
+    if (shot.converged) keep(shot.squared, shot.parts);
     const bool as_expected =
         shot.converged && std::fabs(std::sqrt(shot.squared) - size) < (size < 1.0 ? 0.1 : 0.05) * size;
     // Near |λ*| = 2π the phase is open as far as the offset other than lateral is smaller than what the approximation
@@ -254,7 +256,7 @@ class Search {
       s = next;
       if (at.iterations < 5) step *= 1.5;
     }
-    keep(at.squared, now);
+    keep(at.squared, {now});
   }
 
   void try_remedies() {
@@ -268,6 +270,38 @@ class Search {
       }
     }
     if (!settled()) from_isotropic();
+  }
+
+  /// Continuation in ρ² from a roll that costs no more than a bend: where it costs more, geodesics roll by going round,
+  /// of which the first guesses know nothing.
+  void from_lighter_roll() {
+    Search lighter(target_, {1.0, weights_.lateral_compliance});
+    const GeodesicDistance first = lighter.run();
+    best_.shots += first.shots;
+    if (!first.found) return;
+    std::vector<Covector> now = lighter.best_parts_;
+    // The far field alone has no parts to go on from.
+    if (parts_of(std::sqrt(first.squared)) > static_cast<int>(now.size()) && now.size() == 1 &&
+        std::sqrt(first.squared) * rate_ > 37.0) {
+      return;
+    }
+    const double log_roll = std::log(weights_.roll_squared);
+    double s = 0.0, step = std::min(1.0, 0.4 / log_roll);
+    while (s < 1.0) {
+      step = std::min(step, 1.0 - s);
+      const bool last = s + step >= 1.0;
+      const double roll_squared = last ? weights_.roll_squared : std::exp((s + step) * log_roll);
+      const Shot at = attempt(now, {roll_squared, weights_.lateral_compliance}, bounds_.upper);
+      if (!at.converged) {
+        step *= 0.5;
+        if (step < 1e-2 / log_roll) return;
+        continue;
+      }
+      now = at.parts;
+      s += step;
+      if (at.iterations < 5) step *= 1.5;
+    }
+    keep(squared_length(now[0], weights_), now);
   }
 
   /// Continuation in the weights, from the metric whose geodesics have closed forms.
@@ -298,19 +332,21 @@ class Search {
       step *= 1.5;
     }
     if (weights_.lateral_compliance > 0.0) {
-      keep(squared_length(now[0], weights_), now[0]);
+      keep(squared_length(now[0], weights_), now);
     } else {
       attempt(now, bounds_.upper);
     }
   }
 
   static constexpr double tolerance = 1e-9;
+  static constexpr double heavy_roll = 2.0;
   const lie::Se3 target_;
   const Weights weights_;
   const DistanceBounds bounds_;
   double rate_ = 1.0;
   bool found_far_alone_ = false;
   GeodesicDistance best_;
+  std::vector<Covector> best_parts_;
 };
 
 /// The covector at the end of a geodesic from the identity: momenta in space are constant.

@@ -119,7 +119,7 @@ GeodesicEnd follow_geodesic(const Covector& start, double duration, const Weight
   const Equations equations{moment(start), force(start), weights.lateral_compliance};
   const double rate =
       std::max(norm(equations.m), norm(equations.p) * std::max(1.0, std::fabs(1.0 - equations.compliance)));
-  const double longest = accuracy == Accuracy::fine ? 0.2 : 0.8;
+  const double longest = accuracy == Accuracy::fine ? 0.15 : 0.8;
   const int steps = std::clamp(static_cast<int>(std::ceil(rate * duration / longest)), 1, 2000);
   State state;
   state.data[State::q] = 1.0;

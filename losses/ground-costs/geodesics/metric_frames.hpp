@@ -24,14 +24,14 @@ inline constexpr ParameterDeclaration forward_weight{.key = "forward-weight",
                                                      .type = ParameterType::scalar,
                                                      .unit = "1/mm",
                                                      .default_text = "\"1 1/mm\"",
-                                                     .description = "What motion along the tangent costs, per length",
+                                                     .description = "what motion along the tangent costs, per length",
                                                      .lower = 0.0,
                                                      .lower_exclusive = true};
 inline constexpr ParameterDeclaration lateral_weight{.key = "lateral-weight",
                                                      .type = ParameterType::scalar,
                                                      .unit = "1/mm",
                                                      .default_text = "\"1 1/mm\"",
-                                                     .description = "What motion across the tangent costs, per length",
+                                                     .description = "what motion across the tangent costs, per length",
                                                      .lower = 0.0,
                                                      .lower_exclusive = true};
 inline constexpr ParameterDeclaration bend_weight{
@@ -40,14 +40,14 @@ inline constexpr ParameterDeclaration bend_weight{
     .unit = "",
     .default_text = "1.0",
     .description =
-        "What turning the tangent costs, per rad; over forward-weight it is the length that a radian is worth",
+        "what turning the tangent costs, per rad; over forward-weight it is the length that a radian is worth",
     .lower = 0.0,
     .lower_exclusive = true};
 inline constexpr ParameterDeclaration roll_weight{.key = "roll-weight",
                                                   .type = ParameterType::scalar,
                                                   .unit = "",
                                                   .default_text = "1.0",
-                                                  .description = "What a turn about the tangent costs, per rad",
+                                                  .description = "what a turn about the tangent costs, per rad",
                                                   .lower = 0.0,
                                                   .lower_exclusive = true};
 

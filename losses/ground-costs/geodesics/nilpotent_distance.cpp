@@ -70,7 +70,20 @@ struct DualFunction {
     h11 = common + 0.5 * q.value * b + l[1] * l[1] * (curved + 0.5 * q.first * b);
     h01 = l[0] * l[1] * (curved + 0.25 * q.first * (a + b));
   }
+  /// To the top of the quadratic model, in λ.
+  Vector2 newton_step() const noexcept {
+    const double determinant = h00 * h11 - h01 * h01;
+    return {
+        {(h11 * gradient[0] - h01 * gradient[1]) / determinant, (h00 * gradient[1] - h01 * gradient[0]) / determinant}};
+  }
 };
+
+/// Whether a step that promises `decrement` has done good. What is less than rounding is not judged by values, but by
+/// what the next step promises.
+bool improves(const DualFunction& from, double decrement, const DualFunction& to, double rounding) noexcept {
+  if (decrement > rounding) return to.value >= from.value;
+  return 0.5 * dot(to.newton_step(), to.gradient) <= decrement;
+}
 
 /// The radius |y| at which the maximum along a direction lies, roughly: exact for small and for large ratios of
 /// z·n to s² + (ψ·n)².
@@ -187,7 +200,6 @@ NilpotentSolution nilpotent_distance(const NilpotentOffset& offset, double enoug
     const DualFunction there(canonical, other);
     if (there.value > dual.value) at = other, dual = there;
   }
-  // Steps that promise less than rounding shows are not judged by values.
   const double rounding = 2e-15 * (horizontal + 4.0 * pi * lateral);
   constexpr int most_iterations = 60, patience = 15;
   for (; out.iterations < most_iterations; ++out.iterations) {
@@ -200,16 +212,14 @@ NilpotentSolution nilpotent_distance(const NilpotentOffset& offset, double enoug
       out.squared = horizontal + dual.value;
       return out;
     }
-    const double determinant = dual.h00 * dual.h11 - dual.h01 * dual.h01;
-    Vector2 newton{{(dual.h11 * dual.gradient[0] - dual.h01 * dual.gradient[1]) / determinant,
-                    (dual.h00 * dual.gradient[1] - dual.h01 * dual.gradient[0]) / determinant}};
+    const Vector2 newton = dual.newton_step();
     const double decrement = 0.5 * dot(newton, dual.gradient);
     const Vector2 in_plane = (newton + dot(at.y, newton) * at.y) / (2.0 * pi * std::sqrt(at.distance_to_pole));
     const bool last = decrement <= 1e-9 * dual.bent;
     double share = 1.0;
     Place next(at.y + in_plane);
     DualFunction there(canonical, next);
-    while (decrement > rounding && there.value < dual.value && share > 1e-10) {
+    while (!improves(dual, decrement, there, rounding) && share > 1e-10) {
       share *= 0.5;
       next = Place(at.y + share * in_plane);
       there = DualFunction(canonical, next);

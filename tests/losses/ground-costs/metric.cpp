@@ -20,3 +20,14 @@ TEST_CASE("The sub-Riemannian distance satisfies the triangle inequality") {
   }
   CHECK(tightest > 0.5);
 }
+
+TEST_CASE("The nilpotent approximation is no metric") {
+  const OpenCost nilpotent("se3-nilpotent"), exact("se3-subriemannian");
+  const Se3 g, h = se3::exp({{-1.3, -1.8, 0.4, -1.8, -0.2, -1.8}}),
+               f = h * se3::exp({{-0.5, 0.8, 1.4, -0.7, 1.0, -0.4}});
+  const auto excess = [&](const OpenCost& cost) {
+    return std::sqrt(cost(g, f)) - std::sqrt(cost(g, h)) - std::sqrt(cost(h, f));
+  };
+  CHECK(excess(nilpotent) == doctest::Approx(1.13914).epsilon(1e-4));
+  CHECK(excess(exact) < 0.0);
+}
