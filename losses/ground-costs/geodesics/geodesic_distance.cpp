@@ -190,9 +190,10 @@ class Search {
 
   void look_near() {
     for (const Chart& chart : charts()) near_chart(chart);
-    if (weights_.lateral_compliance > 0.0) {
-      attempt({one_parameter_covector(lie::se3::log(target_), weights_)}, bounds_.upper);
-    }
+    if (weights_.lateral_compliance == 0.0) return;
+    // Of little use where lateral motion is dear: its path goes sideways all the same.
+    const Covector along = one_parameter_covector(lie::se3::log(target_), weights_);
+    if (std::sqrt(squared_length(along, weights_)) < 1.5 * best()) attempt({along}, bounds_.upper);
   }
 
   void near_chart(const Chart& chart) {
