@@ -112,6 +112,48 @@ TEST_CASE("it goes on from the potentials of the call before") {
   CHECK(again.answer.value == doctest::Approx(warm.answer.value).epsilon(1e-10));
 }
 
+TEST_CASE("few places and many, either way round, where scaling alone would be at it for long") {
+  const Measure few = random_cloud(12, 31, 10.0), many = random_cloud(60, 32, 10.0);
+  TransportComparison exact = opened("exact"), sinkhorn = opened("sinkhorn", with_epsilon(0.01, false));
+  const TransportResult one = compared(sinkhorn, few, many), other = compared(sinkhorn, many, few);
+  CHECK(figure(one.answer, "converged") == 1.0);
+  CHECK(figure(other.answer, "converged") == 1.0);
+  CHECK(one.answer.value == doctest::Approx(other.answer.value).epsilon(1e-10));
+  CHECK(one.answer.iterations < 5000);
+  CHECK(other.answer.iterations < 5000);
+  const double least = value_of(exact, few, many);
+  CHECK(one.answer.transport_cost >= least * (1.0 - 1e-9));
+  CHECK(one.answer.transport_cost == doctest::Approx(least).epsilon(1e-3));
+}
+
+TEST_CASE("ordered curves at small epsilon: few iterations, and no wrong end") {
+  // Pairs of next to no mass connect what each place of a curve exchanges with its neighbours.
+  Measure a, b;
+  constexpr int count = 80;
+  constexpr double dearest = 60.0 * 60.0 + 60.0 * 60.0;
+  for (int i = 0; i < count; ++i) {
+    const double t = (i + 0.5) / count;
+    for (Measure* measure : {&a, &b}) {
+      const double angle = 25.0 * t + (measure == &a ? 0.0 : 0.4);
+      measure->position.insert(measure->position.end(), {30.0 * std::cos(angle), 30.0 * std::sin(angle), 60.0 * t});
+      measure->weight.push_back(1.0 / count);
+    }
+  }
+  TransportComparison exact = opened("exact");
+  const double least = value_of(exact, a, b);
+  for (const double share : {1e-1, 1e-2, 1e-3}) {
+    TransportComparison sinkhorn = opened("sinkhorn", with_epsilon(share * least, false));
+    const TransportResult result = compared(sinkhorn, a, b);
+    CHECK(figure(result.answer, "converged") == 1.0);
+    CHECK(result.answer.iterations < 5000);
+    // What rounding moves, twice the error of the marginals, costs no more than the dearest pair.
+    CHECK(result.answer.gap >= -1e-12 * least);
+    CHECK(result.answer.gap <= 2.0 * figure(result.answer, "marginal_error") * dearest + 1e-12 * least);
+    CHECK(result.answer.value >= least);
+    CHECK(result.answer.value <= least + share * least * std::log(count) * (1.0 + 1e-6));
+  }
+}
+
 TEST_CASE("weights of any sum, places without weight, forbidden pairs") {
   TransportComparison sinkhorn = opened("sinkhorn", with_epsilon(0.5, false));
   Measure a = random_cloud(6, 8), b = random_cloud(5, 9);
