@@ -180,7 +180,7 @@ Json loss_json(const LossTable& loss) {
   Json table = {{"name", loss.label}, {"on", loss.on}, {"against", loss.against}};
   if (loss.sampling.points > 0) table["points"] = loss.sampling.points;
   table["weights"] = curve_weights_name(loss.sampling.weights);
-  for (const Station& station : loss.sampling.stations) {
+  for (const MeasureStation& station : loss.sampling.stations) {
     table["stations"].push_back({{"at", station.at}, {"spread", station.spread}, {"weight", station.weight}});
   }
   table["transport"] = component_table(loss.transport);

@@ -104,7 +104,7 @@ std::vector<double> weights_of(const Places& places, const CurveSampling& sampli
     if (sampling.weights != CurveWeights::uniform) out[i] = places.length[i];
     if (sampling.weights == CurveWeights::lumen_section) out[i] *= places.radius[i] * places.radius[i];
     double factor = 1.0;
-    for (const Station& station : sampling.stations) {
+    for (const MeasureStation& station : sampling.stations) {
       const double away = (places.arc[i] - station.at) / station.spread;
       factor += station.weight * std::exp(-0.5 * away * away);
     }

@@ -19,7 +19,7 @@ inline constexpr const char* curve_weights_choices = "uniform|arc-length|lumen-s
 bool read_curve_weights(const char* name, CurveWeights& out) noexcept;
 
 /// Where a measure counts for more: a factor 1 + Σ weight · exp(−((s − at)/spread)²/2) along the curve.
-struct Station {
+struct MeasureStation {
   double at = 0.0;      ///< arc length from the first end, mm
   double spread = 1.0;  ///< mm, > 0
   double weight = 1.0;  ///< not negative
@@ -29,7 +29,7 @@ struct Station {
 struct CurveSampling {
   int points = 0;  ///< how many places; 0: the curve's nodes
   CurveWeights weights = CurveWeights::uniform;
-  std::vector<Station> stations;
+  std::vector<MeasureStation> stations;
 };
 
 }  // namespace bowstring

@@ -56,7 +56,7 @@ class Checker {
   }
 
   void warn_of_stations(const Curve& curve) {
-    for (const Station& station : loss_.sampling.stations) {
+    for (const MeasureStation& station : loss_.sampling.stations) {
       if (station.at <= curve.arc.back()) continue;
       scene_.warnings.push_back("the station at " + decimal(station.at) + " mm of " + owner_of(loss_) +
                                 " lies beyond the end of '" + loss_.on + "', which is " + decimal(curve.arc.back()) +

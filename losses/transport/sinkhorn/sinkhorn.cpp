@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstddef>
+#include <cstdio>
 #include <numeric>
 
 #include "core/interfaces/transport.hpp"
@@ -80,7 +81,6 @@ class Sinkhorn final : public Transport {
 
  private:
   void compare(const TransportProblem& problem, TransportAnswer& out) {
-    converged_ = true;
     const double mass = std::accumulate(problem.weight_a.begin(), problem.weight_a.end(), 0.0);
     Vector a = vector_of(problem.weight_a), b = vector_of(problem.weight_b);
     a /= a.sum();
@@ -92,6 +92,7 @@ class Sinkhorn final : public Transport {
       between.g = kept_g_;
     }
     between.solve(epsilon_, limits_, out.warm);
+    require_convergence(between);
     kept_f_ = between.f;
     kept_g_ = between.g;
 
@@ -109,7 +110,6 @@ class Sinkhorn final : public Transport {
       take_off(*problem.within_a, a, mass, out.value, out.by_cost_within_a, by_a, out);
       take_off(*problem.within_b, b, mass, out.value, out.by_cost_within_b, by_b, out);
     }
-    out.figures.emplace_back("converged", converged_ && between.marginal_error <= limits_.tolerance ? 1.0 : 0.0);
     const double shift = 0.5 * (b.dot(between.g) - a.dot(between.f));
     out.dual_a = numbers_of(between.f.array() + shift);
     out.dual_b = numbers_of(between.g.array() - shift);
@@ -123,18 +123,28 @@ class Sinkhorn final : public Transport {
                 Vector& by_weight, TransportAnswer& out) {
     EntropicProblem within(matrix_of(costs), weight, weight);
     within.solve_symmetric(epsilon_, limits_);
+    require_convergence(within);
     const Matrix plan = within.plan();
     value -= 0.5 * mass * within.dual_value(plan);
     by_cost = entries_of(plan, -0.5 * mass);
     by_weight -= within.f;
     out.memory_bytes = std::max(out.memory_bytes, within.memory_bytes());
-    converged_ = converged_ && within.marginal_error <= limits_.tolerance;
+  }
+
+  void require_convergence(const EntropicProblem& problem) const {
+    if (problem.marginal_error <= limits_.tolerance) return;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "after %ld iterations the marginals are off by %.3g of the mass; expected %.3g; raise max-iterations, "
+        "tolerance or epsilon",
+        problem.iterations, problem.marginal_error, limits_.tolerance);
+    throw StatusError(Code::failed, text);
   }
 
   double epsilon_;
   bool debiased_;
   Limits limits_;
-  bool converged_ = true;
   Vector kept_f_, kept_g_;
 };
 

@@ -1,14 +1,16 @@
-#include "opened_transport.hpp"
+#include "tests/losses/transport/opened_transport.hpp"
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
+#include "core/transport/check_measure.hpp"
 #include "plugins/host/plugin_host.hpp"
 
-namespace transport_test {
+namespace bowstring::testing {
 namespace {
 
 PluginHost& plugins() {
@@ -21,10 +23,6 @@ TransportRequest request_of(const std::string& method, const Settings& settings)
   out.method = method;
   for (const auto& [key, value] : settings) out.settings.push_back({key, value, "", ""});
   return out;
-}
-
-double value_of(TransportComparison& transport, const Measure& a, const Measure& b) {
-  return compare(transport, a, b).answer.value;
 }
 
 /// Of fourth order.
@@ -95,6 +93,13 @@ TransportResult compare(TransportComparison& transport, const Measure& a, const 
   return out;
 }
 
+double value_of(TransportComparison& transport, const Measure& a, const Measure& b) {
+  TransportResult out;
+  const Status status = transport.compare(a, b, out, false);
+  REQUIRE_MESSAGE(status.ok(), status.text);
+  return out.answer.value;
+}
+
 TransportAnswer compare(TransportComparison& transport, const std::vector<double>& a, const std::vector<double>& b,
                         const std::vector<double>& cost) {
   TransportResult out;
@@ -116,6 +121,22 @@ Measure random_cloud(std::mt19937& random, std::size_t count) {
   out.position = random_numbers(random, 3 * count, 0.0, 1.0);
   out.weight = random_numbers(random, count, 0.5, 1.5);
   return out;
+}
+
+Measure probability_cloud(std::size_t count, unsigned seed, double edge, bool equal_weights) {
+  std::mt19937 random(seed);
+  Measure out = random_cloud(random, count);
+  if (equal_weights) out.weight = uniform_weights(count);
+  for (double& x : out.position) x *= edge;
+  const double sum = std::accumulate(out.weight.begin(), out.weight.end(), 0.0);
+  for (double& weight : out.weight) weight /= sum;
+  return out;
+}
+
+Measure shifted(Measure measure, double x, double y, double z) {
+  const double shift[] = {x, y, z};
+  for (std::size_t k = 0; k < measure.position.size(); ++k) measure.position[k] += shift[k % 3];
+  return measure;
 }
 
 Measure with_frames(std::mt19937& random, Measure points) {
@@ -145,4 +166,4 @@ void check_weight_gradients(TransportComparison& transport, const Measure& a, co
   check_weights(transport, a, b, false, at.weight_gradient_b, together, tolerance);
 }
 
-}  // namespace transport_test
+}  // namespace bowstring::testing

@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "core/lie/so3.hpp"
-#include "opened_transport.hpp"
+#include "tests/losses/transport/opened_transport.hpp"
 
-using namespace transport_test;
+using namespace bowstring;
+using namespace bowstring::testing;
 
 namespace {
 

@@ -5,9 +5,10 @@
 
 #include "core/model/component.hpp"
 #include "core/transport/pair_costs.hpp"
-#include "opened_transport.hpp"
+#include "tests/losses/transport/opened_transport.hpp"
 
-using namespace transport_test;
+using namespace bowstring;
+using namespace bowstring::testing;
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/composition/tree.hpp"
-#include "tests/losses/transport/compared.hpp"
+#include "tests/losses/transport/opened_transport.hpp"
 
 using namespace bowstring;
 using namespace bowstring::testing;
@@ -17,9 +17,9 @@ struct Regularized {
 };
 
 Regularized regularized(const Measure& a, const Measure& b, double epsilon, bool debiased) {
-  TransportComparison sinkhorn = opened(
+  TransportComparison sinkhorn = open_transport(
       "sinkhorn", {{"epsilon", decimal(epsilon)}, {"debiased", debiased ? "true" : "false"}, {"tolerance", "1e-11"}});
-  const TransportAnswer answer = compared(sinkhorn, a, b).answer;
+  const TransportAnswer answer = compare(sinkhorn, a, b).answer;
   return {answer.value, answer.transport_cost};
 }
 
@@ -122,9 +122,10 @@ TEST_CASE("normal distributions: the divergence's error is of second order in ep
 TEST_CASE("places: the value comes down on the exact one as epsilon log n, the cost exponentially") {
   constexpr int count = 20;
   for (unsigned seed = 1; seed <= 10; ++seed) {
-    const Measure a = random_cloud(count, 2 * seed, 10.0, true), b = random_cloud(count, 2 * seed + 1, 10.0, true);
-    TransportComparison transport = opened("exact");
-    const TransportAnswer best = compared(transport, a, b).answer;
+    const Measure a = probability_cloud(count, 2 * seed, 10.0, true),
+                  b = probability_cloud(count, 2 * seed + 1, 10.0, true);
+    TransportComparison transport = open_transport("exact");
+    const TransportAnswer best = compare(transport, a, b).answer;
     REQUIRE(best.plan.value.size() == count);
     const double rate = cheapest_exchange(a, b, best.plan);
     REQUIRE(rate > 0.0);

@@ -1,8 +1,9 @@
 #include <doctest/doctest.h>
 
-#include "problems.hpp"
+#include "tests/losses/transport/unbalanced/problems.hpp"
 
-using namespace transport_test;
+using namespace bowstring;
+using namespace bowstring::testing;
 
 TEST_CASE("derivatives by places and weights, against differences") {
   std::mt19937 random(1);

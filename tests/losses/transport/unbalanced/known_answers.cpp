@@ -5,9 +5,10 @@
 #include <limits>
 #include <numeric>
 
-#include "problems.hpp"
+#include "tests/losses/transport/unbalanced/problems.hpp"
 
-using namespace transport_test;
+using namespace bowstring;
+using namespace bowstring::testing;
 
 namespace {
 

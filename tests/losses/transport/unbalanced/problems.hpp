@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "opened_transport.hpp"
+#include "tests/losses/transport/opened_transport.hpp"
 
-namespace transport_test {
+namespace bowstring::testing {
 
 /// 'unbalanced' of a penalty, with epsilon where it is above zero.
 inline TransportComparison unbalanced(const std::string& penalty, double weight, double epsilon = 0.0) {
@@ -21,4 +21,4 @@ inline double figure(const TransportAnswer& answer, const std::string& name) {
   return -1.0;
 }
 
-}  // namespace transport_test
+}  // namespace bowstring::testing

@@ -6,9 +6,10 @@
 #include <utility>
 
 #include "core/model/component.hpp"
-#include "problems.hpp"
+#include "tests/losses/transport/unbalanced/problems.hpp"
 
-using namespace transport_test;
+using namespace bowstring;
+using namespace bowstring::testing;
 
 namespace {
 

@@ -3,9 +3,10 @@
 #include <cmath>
 
 #include "core/transport/one_sided.hpp"
-#include "problems.hpp"
+#include "tests/losses/transport/unbalanced/problems.hpp"
 
-using namespace transport_test;
+using namespace bowstring;
+using namespace bowstring::testing;
 
 TEST_CASE("settings that are missing or do not go together are told") {
   CHECK(refusal_of("unbalanced", {}).find("marginal-weight") != std::string::npos);
