@@ -60,6 +60,9 @@ constexpr double reach = 20.0;
 /// Adds `damping` of the diagonal: directions in which the dual is flat below rounding stay where they are.
 constexpr double damping = 1e-13;
 
+/// Pairs with less mass than this couple nothing beside the damping, and products of their masses would be denormal.
+constexpr double least_coupling = 1e-60;
+
 }  // namespace
 
 EntropicProblem::EntropicProblem(Matrix cost, Vector a, Vector b)
@@ -87,29 +90,35 @@ void EntropicProblem::update_in_logarithms() {
 /// singular along constants that f gains and g loses. Of the smaller side the Schur complement is factorized. Halved
 /// until the dual grows; false where it does not.
 bool EntropicProblem::newton_step() {
-  const Matrix here = plan();
+  const bool turned = f.size() < g.size();
+  const Vector &a = turned ? b_ : a_, &b = turned ? a_ : b_;
+  Vector &of_a = turned ? g : f, &of_b = turned ? f : g;
+  const Matrix as_it_stands = plan();
+  const Matrix here = turned ? Matrix(as_it_stands.transpose()) : as_it_stands;
   const Vector row = here.rowwise().sum(), column = here.colwise().sum().transpose();
-  const Vector residual_a = a_ - row, residual_b = b_ - column;
+  const Vector residual_a = a - row, residual_b = b - column;
   const Vector inverse_row = row.unaryExpr([](double sum) { return sum > 0.0 ? 1.0 / sum : 0.0; });
-  const Matrix scaled = inverse_row.asDiagonal() * here;
-  Eigen::MatrixXd schur = -here.transpose() * scaled;
-  schur.diagonal() += column;
-  for (Eigen::Index j = 0; j < schur.rows(); ++j) schur(j, j) += column[j] > 0.0 ? damping * column[j] : 1.0;
+  const Matrix coupling = (here.array() < least_coupling).select(0.0, here);
+  const Matrix scaled = inverse_row.cwiseSqrt().asDiagonal() * coupling;
+  Eigen::MatrixXd schur = Eigen::MatrixXd::Zero(b.size(), b.size());
+  schur.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose(), -1.0);
+  for (Eigen::Index j = 0; j < schur.rows(); ++j) schur(j, j) += column[j] > 0.0 ? (1.0 + damping) * column[j] : 1.0;
   const Eigen::LLT<Eigen::MatrixXd> factor(schur);
   if (factor.info() != Eigen::Success) return false;
-  const Vector step_g = epsilon_ * factor.solve(residual_b - scaled.transpose() * residual_a);
-  const Vector step_f = epsilon_ * inverse_row.cwiseProduct(residual_a) - scaled * step_g;
-  const Vector from_f = f, from_g = g;
-  const double value = dual_value(here);
-  const double longest = std::max(step_f.lpNorm<Eigen::Infinity>(), step_g.lpNorm<Eigen::Infinity>());
+  const Vector step_b =
+      epsilon_ * factor.solve(residual_b - coupling.transpose() * inverse_row.cwiseProduct(residual_a));
+  const Vector step_a = inverse_row.cwiseProduct(epsilon_ * residual_a - coupling * step_b);
+  const Vector from_a = of_a, from_b = of_b;
+  const double value = dual_value(as_it_stands);
+  const double longest = std::max(step_a.lpNorm<Eigen::Infinity>(), step_b.lpNorm<Eigen::Infinity>());
   for (double share = std::min(1.0, reach * epsilon_ / longest), least = 1e-3 * share; share > least; share *= 0.5) {
-    f = from_f + share * step_f;
-    g = from_g + share * step_g;
+    of_a = from_a + share * step_a;
+    of_b = from_b + share * step_b;
     const double next = dual_value(plan());
     if (std::isfinite(next) && next >= value) return true;
   }
-  f = from_f;
-  g = from_g;
+  of_a = from_a;
+  of_b = from_b;
   return false;
 }
 

@@ -25,6 +25,13 @@ def count(wanted):
     return max(1, wanted // 10) if "BOWSTRING_TEST_SHORT" in os.environ else wanted
 
 
+def random_measure(random):
+    """Places in a cube of 10 mm and weights that sum to 1."""
+    places = random.integers(1, 31)
+    weight = 0.05 + random.random(places)
+    return 10.0 * random.random((places, 3)), weight / weight.sum()
+
+
 def solve(tool, problems):
     with tempfile.TemporaryDirectory() as folder:
         asked, answered = os.path.join(folder, "problems.json"), os.path.join(folder, "answers.json")

@@ -103,6 +103,56 @@ TEST_CASE("it goes on from the potentials of the call before") {
   CHECK(again.answer.value == doctest::Approx(warm.answer.value).epsilon(1e-10));
 }
 
+TEST_CASE("few places and many, either way round, where scaling alone would be at it for long") {
+  const Measure few = probability_cloud(12, 31, 10.0), many = probability_cloud(60, 32, 10.0);
+  TransportComparison exact = open_transport("exact"), sinkhorn = open_transport("sinkhorn", with_epsilon(0.01, false));
+  const TransportResult one = compare(sinkhorn, few, many), other = compare(sinkhorn, many, few);
+  CHECK(one.answer.value == doctest::Approx(other.answer.value).epsilon(1e-10));
+  CHECK(one.answer.iterations < 5000);
+  CHECK(other.answer.iterations < 5000);
+  const double least = value_of(exact, few, many);
+  CHECK(one.answer.transport_cost >= least * (1.0 - 1e-9));
+  CHECK(one.answer.transport_cost == doctest::Approx(least).epsilon(1e-3));
+}
+
+TEST_CASE("ordered curves at small epsilon: few iterations, and no wrong end") {
+  // Pairs of next to no mass connect what each place of a curve exchanges with its neighbours.
+  Measure a, b;
+  constexpr int count = 80;
+  constexpr double dearest = 60.0 * 60.0 + 60.0 * 60.0;
+  for (int i = 0; i < count; ++i) {
+    const double t = (i + 0.5) / count;
+    for (Measure* measure : {&a, &b}) {
+      const double angle = 25.0 * t + (measure == &a ? 0.0 : 0.4);
+      measure->position.insert(measure->position.end(), {30.0 * std::cos(angle), 30.0 * std::sin(angle), 60.0 * t});
+      measure->weight.push_back(1.0 / count);
+    }
+  }
+  TransportComparison exact = open_transport("exact");
+  const double least = value_of(exact, a, b);
+  for (const double share : {1e-1, 1e-2, 1e-3}) {
+    TransportComparison sinkhorn = open_transport("sinkhorn", with_epsilon(share * least, false));
+    const TransportResult result = compare(sinkhorn, a, b);
+    CHECK(result.answer.iterations < 5000);
+    // What rounding moves, twice the tolerance of the marginals, costs no more than the dearest pair.
+    CHECK(result.answer.gap >= -1e-12 * least);
+    CHECK(result.answer.gap <= 2.0 * 1e-9 * dearest);
+    CHECK(result.answer.value >= least);
+    CHECK(result.answer.value <= least + share * least * std::log(count) * (1.0 + 1e-6));
+  }
+}
+
+TEST_CASE("what has not converged is no answer, and says how to mend it") {
+  const Measure a = probability_cloud(30, 33, 10.0), b = probability_cloud(30, 34, 10.0);
+  TransportComparison sinkhorn =
+      open_transport("sinkhorn", {{"epsilon", "0.01"}, {"debiased", "false"}, {"max-iterations", "1"}});
+  TransportResult result;
+  const Status status = sinkhorn.compare(a, b, result);
+  CHECK(status.code == Code::failed);
+  CHECK(status.text.find("the marginals are off by") != std::string::npos);
+  CHECK(status.text.find("expected 1e-09; raise max-iterations, tolerance or epsilon") != std::string::npos);
+}
+
 TEST_CASE("weights of any sum, places without weight, forbidden pairs") {
   TransportComparison sinkhorn = open_transport("sinkhorn", with_epsilon(0.5, false));
   Measure a = probability_cloud(6, 8), b = probability_cloud(5, 9);
